@@ -21,7 +21,7 @@ struct CubePoint {
     Vec2 st = {0.5f, 0.5f};  ///< 0 .. 1
 };
 
-/// Where `direction`, of any length, meets the cube. Ties between components go to x, then y, then
+/// Where `direction`, of any length, hits the cube. Ties between components go to x, then y, then
 /// z; the zero vector maps to the center of face 4.
 [[nodiscard]] CubePoint cube_point(const Vec3& direction);
 

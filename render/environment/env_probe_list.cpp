@@ -44,7 +44,7 @@ void fill_region(const EnvProbe& probe, const Affine& pose, ProbeSlot& slot) {
 
 void EnvProbeList::collect(const World& world, float alpha, int max_resolution) {
     for (ProbeSlot& slot : slots_) {
-        slot.seen = false;
+        slot.alive = false;
     }
     struct Found {
         Entity entity;
@@ -53,10 +53,10 @@ void EnvProbeList::collect(const World& world, float alpha, int max_resolution) 
         std::uint64_t due;
     };
     std::vector<Found> added;
-    const auto take = [&](ProbeSlot& slot, const Found& found) {
-        const auto asked =
+    const auto update_slot = [&](ProbeSlot& slot, const Found& found) {
+        const auto requested =
             static_cast<unsigned>(std::clamp(found.probe->resolution, kMinFace, max_resolution));
-        const int resolution = static_cast<int>(std::bit_floor(asked));
+        const int resolution = static_cast<int>(std::bit_floor(requested));
         if (slot.entity != found.entity || slot.resolution != resolution) {
             gpu::Texture cube = std::move(slot.cube);
             slot = {
@@ -65,14 +65,14 @@ void EnvProbeList::collect(const World& world, float alpha, int max_resolution) 
                 .record = {},
                 .cube = std::move(cube)};
         }
-        slot.seen = true;
+        slot.alive = true;
         // Six faces complete the cube, however many updates were missed.
         slot.due = found.due;
         const std::uint64_t first = found.due - std::min<std::uint64_t>(found.due, kCubeFaces);
         slot.drawn = slot.fresh == 0 ? first : std::max(slot.drawn, first);
         slot.near = std::max(found.probe->near, 1e-4f);
         if (slot.drawn < slot.due) {
-            slot.seen_from = {found.pose.row[0].w, found.pose.row[1].w, found.pose.row[2].w};
+            slot.capture_position = {found.pose.row[0].w, found.pose.row[1].w, found.pose.row[2].w};
         }
         fill_region(*found.probe, found.pose, slot);
     };
@@ -92,19 +92,19 @@ void EnvProbeList::collect(const World& world, float alpha, int max_resolution) 
                 return s.entity == entity;
             });
             if (slot != slots_.end()) {
-                take(*slot, found);
+                update_slot(*slot, found);
             } else {
                 added.push_back(found);
             }
         });
     std::size_t served = 0;
     for (ProbeSlot& slot : slots_) {
-        if (!slot.seen) {
+        if (!slot.alive) {
             slot.entity = {};
             slot.ready = false;
             slot.fresh = 0;
             if (served < added.size()) {
-                take(slot, added[served++]);
+                update_slot(slot, added[served++]);
             }
         }
     }
@@ -127,7 +127,7 @@ layout::ProbeBlock EnvProbeList::make_block() const {
     std::array<std::size_t, layout::kMaxProbes> order{};
     std::size_t count = 0;
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-        if (slots_[i].seen && slots_[i].ready) {
+        if (slots_[i].alive && slots_[i].ready) {
             order[count++] = i;
         }
     }
@@ -139,13 +139,14 @@ layout::ProbeBlock EnvProbeList::make_block() const {
     for (std::size_t i = 0; i < count; ++i) {
         const ProbeSlot& slot = slots_[order[i]];
         block.probes[i] = slot.record;
-        block.probes[i].seen_from = Vec4(slot.seen_from, static_cast<float>(probe_layer(order[i])));
+        block.probes[i].capture_position =
+            Vec4(slot.capture_position, static_cast<float>(probe_layer(order[i])));
     }
     return block;
 }
 
 RenderView make_probe_view(const ProbeSlot& slot, int face, float alpha) {
-    const Affine pose = cube_face_pose(face, slot.seen_from);
+    const Affine pose = cube_face_pose(face, slot.capture_position);
     RenderView view = make_render_view(
         {.fov_y = radians(90.0f), .near = slot.near}, pose, pose,
         {.width = slot.resolution, .height = slot.resolution});

@@ -19,17 +19,17 @@ class World;
 
 /// A probe that has a layer.
 struct ProbeSlot {
-    Entity entity;               ///< null: the slot is free
-    bool seen = false;           ///< exists in this frame
-    std::uint64_t due = 0;       ///< faces due so far, counted on; number i is face i mod 6
-    std::uint64_t drawn = 0;     ///< faces drawn so far
-    int fresh = 0;               ///< of these, since the last reset
-    bool ready = false;          ///< its layer holds all six faces
-    Vec3 seen_from = {0, 0, 0};  ///< capture position of the faces
+    Entity entity;            ///< null: the slot is free
+    bool alive = false;       ///< exists in this frame
+    std::uint64_t due = 0;    ///< running number of faces due so far; number i is face i mod 6
+    std::uint64_t drawn = 0;  ///< faces drawn so far
+    int fresh = 0;            ///< of these, since the last reset
+    bool ready = false;       ///< its layer holds all six faces
+    Vec3 capture_position = {0, 0, 0};  ///< capture position of the faces
     float near = 0.05f;
     int resolution = 128;
     float size = 0;              ///< mean half side of its region; smaller ones have priority
-    layout::ProbeRecord record;  ///< without seen_from
+    layout::ProbeRecord record;  ///< without capture_position
     gpu::Texture cube;           ///< RGBA16F or RGBA32F with a full mip chain
 };
 

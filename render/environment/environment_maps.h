@@ -9,10 +9,9 @@
 
 namespace limn {
 
-// What surrounds the scene, as surfaces are lit by it: a panorama of any mapping becomes a cube
-// map; the sky, and each environment probe (probe_pass.h), becomes one layer of an octahedral
-// reflection map, prefiltered per mip level, for specular surfaces and SH irradiance for diffuse
-// ones.
+// Environment maps for lighting surfaces: a panorama of any mapping becomes a cube map; the sky,
+// and each environment probe (probe_pass.h), becomes one layer of an octahedral reflection map,
+// prefiltered per mip level, for specular surfaces and SH irradiance for diffuse ones.
 //
 // Reads    Environment and its image; cube maps of probes
 // Writes   sky cube, RGBA16F with all mip levels; reflection maps, RGBA32F with mip levels;

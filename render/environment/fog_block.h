@@ -12,11 +12,11 @@ struct LightList;
 //
 //     e (1 - exp(-x)) / x t,   x = s t / scale height
 //
-// What the fog takes away it scatters: the mean radiance from all around, and the sun's light by
-// Henyey and Greenstein's phase function; not that of other lights, and shadows do not darken it.
+// In-scattering: the mean radiance of the environment, and sunlight by the phase function of Henyey
+// and Greenstein; other lights do not scatter, and shadows do not darken the fog.
 // lib/height_fog.glsl is the same for shaders.
 
-/// As a camera at the height `y` [m] meets it.
+/// The fog for a camera at height `y` [m].
 [[nodiscard]] layout::FogBlock
 make_fog_block(const HeightFog& fog, const LightList& lights, float y);
 

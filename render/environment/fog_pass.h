@@ -12,7 +12,7 @@ namespace limn {
 // Order    after water, before blended surfaces and particles, which add the fog in front of them
 // Shaders  fog.frag, lib/height_fog.glsl
 //
-// Of what a surface mirrors or refracts, only the way from the camera to that surface is foggy.
+// Reflected and refracted light is fogged only along the path from the camera to the surface.
 
 struct FogEffect {
     const gpu::Program* program = nullptr;

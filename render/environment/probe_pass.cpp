@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr int kWarmUpResolution = 16;  ///< of faces that nobody sees [px]
+constexpr int kWarmUpResolution = 16;  ///< of faces drawn only to compile shaders [px]
 constexpr int kProbeSamples = 64;      ///< per texel of a probe's reflection map
 
 /// The probes as lit passes read them in a view.
@@ -55,7 +55,7 @@ void ProbeEffect::request_views(FrameData& frame) {
     faces_drawn = 0;
     for (std::size_t i = 0; i < probes.slots().size(); ++i) {
         ProbeSlot& slot = probes.slots()[i];
-        if (slot.seen && (!slot.cube || slot.cube.width() != slot.resolution)) {
+        if (slot.alive && (!slot.cube || slot.cube.width() != slot.resolution)) {
             slot.cube = gpu::Texture(
                 "probe cube", {.format = frame.radiance_format,
                                .width = slot.resolution,
@@ -63,7 +63,7 @@ void ProbeEffect::request_views(FrameData& frame) {
                                .levels = 0,
                                .target = GL_TEXTURE_CUBE_MAP});
         }
-        for (std::uint64_t drawn = slot.drawn; slot.seen && drawn < slot.due; ++drawn) {
+        for (std::uint64_t drawn = slot.drawn; slot.alive && drawn < slot.due; ++drawn) {
             const int face = static_cast<int>(drawn % kCubeFaces);
             frame.views.push_back(
                 {kProbeView, make_probe_view(slot, face, frame.camera.alpha), "probe",

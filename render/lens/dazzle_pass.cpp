@@ -28,11 +28,11 @@ float angle_between(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-float dazzle_weight(const Dazzle& dazzle, float from_middle) {
-    if (!(from_middle < dazzle.angle)) {
+float dazzle_weight(const Dazzle& dazzle, float off_axis) {
+    if (!(off_axis < dazzle.angle)) {
         return 0;
     }
-    return finite_or(dazzle.opacity * (1 - from_middle / dazzle.angle), 0);
+    return finite_or(dazzle.opacity * (1 - off_axis / dazzle.angle), 0);
 }
 
 bool DazzleEffect::is_used(const FrameData& frame) {
@@ -52,18 +52,18 @@ void DazzleEffect::collect(FrameData& frame) {
     const Vec3 eye = transform_point(view.world_from_camera, Vec3(0));
     const Vec3 forward = transform_vector(view.world_from_camera, Vec3(0, 0, -1));
     frame.world->query<const Dazzle, const WorldTransform, Optional<const DirectionalLight>>().each(
-        [&](const Dazzle& settings, const WorldTransform& place, const DirectionalLight* light) {
+        [&](const Dazzle& settings, const WorldTransform& pose, const DirectionalLight* light) {
             const Dazzle dazzle = within_ranges(settings);
             const bool distant = light != nullptr;
-            const Vec4 at = distant ? Vec4(transform_vector(place.world, Vec3(0, 0, 1)), 0)
-                                    : Vec4(transform_point(place.world, Vec3(0)), 1);
+            const Vec4 at = distant ? Vec4(transform_vector(pose.world, Vec3(0, 0, 1)), 0)
+                                    : Vec4(transform_point(pose.world, Vec3(0)), 1);
             const Vec3 toward = distant ? Vec3(at) : Vec3(at) - eye;
             const float weight = dazzle_weight(dazzle, angle_between(forward, toward));
             const Vec4 clip = view.clip_from_world * at;
             if (weight <= 0 || points.size() >= kMaxPoints || !is_finite(toward)) {
                 return;
             }
-            // At the eye itself nothing can be before it.
+            // A point at or behind the eye cannot be occluded.
             const bool ahead = distant || clip.w > view.near;
             const Vec2 uv = ahead ? 0.5f * Vec2(clip) / clip.w + 0.5f : Vec2(0.5f);
             points.push_back({dazzle.color, weight});

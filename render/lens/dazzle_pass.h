@@ -9,22 +9,22 @@
 
 namespace limn {
 
-// Dazzles who looks at a point: mixes the image with its color (engine.obfuscating-point).
+// Dazzles the viewer of a bright point: mixes the image with its color (engine.obfuscating-point).
 //
 // Reads    radiance, depth; Dazzle with WorldTransform, DirectionalLight
 // Writes   radiance, a new texture
 // Order    after lens flare, before glare and glow: veiling light within the eye
 // Shaders  disk_visibility.frag, dazzle.frag
 //
-// The weight falls in a straight line from the opacity, where one looks at the point, to 0 at the
-// angle. Times the share of the point's disk that nothing hides; outside of the image, where
-// nobody knows, it counts as hidden.
+// The weight falls off linearly from the opacity, for a view straight at the point, to 0 at
+// Dazzle::angle. It is multiplied by the visible fraction of the point's disk; outside the image,
+// where visibility is unknown, the disk counts as occluded.
 
-/// Share of the color for one who looks by `from_middle` [rad] past the point; 0 where a number is
-/// not finite.
-[[nodiscard]] float dazzle_weight(const Dazzle& dazzle, float from_middle);
+/// Weight of the color for a view axis `off_axis` [rad] from the point; 0 where a number is not
+/// finite.
+[[nodiscard]] float dazzle_weight(const Dazzle& dazzle, float off_axis);
 
-/// A point that dazzles: one texel.
+/// A dazzling point: one texel.
 struct DazzlePoint {
     Vec3 color = {0, 0, 0};
     float weight = 0;

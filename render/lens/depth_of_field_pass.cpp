@@ -41,36 +41,36 @@ Vec2 rim(const LensView& lens, float turn) {
     return point_on_aperture(lens, {turn, 1});
 }
 
-/// Radius of the scaled aperture through `place`; 1 at the rim of the unit aperture.
-float radius_of_aperture(const LensView& lens, const Vec2& place) {
+/// Radius of the scaled aperture whose rim passes through `point`; 1 for the unit aperture.
+float radius_of_aperture(const LensView& lens, const Vec2& point) {
     if (lens.blades < 3) {
-        return length(place);
+        return length(point);
     }
     const float slice = 2 * kPi / static_cast<float>(lens.blades);
-    const float angle = std::atan2(place.y, place.x) - lens.blade_rotation;
-    const float from_middle = angle - (std::floor(angle / slice) + 0.5f) * slice;
-    return length(place) * std::cos(from_middle) / std::cos(0.5f * slice);
+    const float angle = std::atan2(point.y, point.x) - lens.blade_rotation;
+    const float from_center = angle - (std::floor(angle / slice) + 0.5f) * slice;
+    return length(point) * std::cos(from_center) / std::cos(0.5f * slice);
 }
 
 /// A grid point, and the radius of the disc or aperture through it.
-struct GridPlace {
+struct GridPoint {
     IVec2 at;
     float radius = 0;
 };
 
 /// Grid points within `extent`, sorted by radius.
 template <typename RadiusOf>
-std::vector<GridPlace> places_around(int extent, RadiusOf&& radius_of) {
-    std::vector<GridPlace> places;
+std::vector<GridPoint> grid_points_around(int extent, RadiusOf&& radius_of) {
+    std::vector<GridPoint> points;
     for (int y = -extent; y <= extent; ++y) {
         for (int x = -extent; x <= extent; ++x) {
-            places.push_back({{x, y}, radius_of(Vec2(x, y))});
+            points.push_back({{x, y}, radius_of(Vec2(x, y))});
         }
     }
-    std::stable_sort(places.begin(), places.end(), [](const GridPlace& a, const GridPlace& b) {
+    std::stable_sort(points.begin(), points.end(), [](const GridPoint& a, const GridPoint& b) {
         return a.radius < b.radius;
     });
-    return places;
+    return points;
 }
 
 /// Grid coverage of a disc of `radius` with a soft rim of width 1, and its variance per axis.
@@ -79,59 +79,61 @@ struct Coverage {
     float variance = 0;
 };
 
-Coverage coverage_of(const std::vector<GridPlace>& places, float radius) {
+Coverage coverage_of(const std::vector<GridPoint>& points, float radius) {
     float area = 0;
-    Vec2 middle = Vec2(0);
+    Vec2 mean = Vec2(0);
     float square = 0;
-    for (const GridPlace& place : places) {
-        const float covered = std::clamp(radius + 0.5f - place.radius, 0.0f, 1.0f);
-        const Vec2 at = Vec2(place.at);
+    for (const GridPoint& point : points) {
+        const float covered = std::clamp(radius + 0.5f - point.radius, 0.0f, 1.0f);
+        const Vec2 at = Vec2(point.at);
         area += covered;
-        middle += covered * at;
+        mean += covered * at;
         square += covered * dot(at, at);
     }
-    middle /= area;
-    return {area, 0.5f * (square / area - dot(middle, middle))};
+    mean /= area;
+    return {area, 0.5f * (square / area - dot(mean, mean))};
 }
 
 void fill_small_circles(layout::FocusBlock& block) {
-    const std::vector<GridPlace> places =
-        places_around(3, [](const Vec2& at) { return length(at); });
+    const std::vector<GridPoint> points =
+        grid_points_around(3, [](const Vec2& at) { return length(at); });
     for (int i = 0; i < layout::kSlightTaps; ++i) {
-        block.pixel[i] = Vec4(places[i].at, places[i].radius, 0);
+        block.pixel[i] = Vec4(points[i].at, points[i].radius, 0);
     }
     for (int i = 0; i < layout::kAreas; ++i) {
         const float radius = static_cast<float>(i) / static_cast<float>(layout::kSlightStep);
-        block.area[i / 4][i % 4] = 1 / coverage_of(places, radius).area;
+        block.area[i / 4][i % 4] = 1 / coverage_of(points, radius).area;
     }
 }
 
-/// Kernels at half resolution, whose discs together with all other blur are as wide as the circles.
+/// Kernels at half resolution, whose discs are as wide as the circles once the blur of resampling
+/// is added.
 void fill_kernels(const LensView& lens, layout::FocusBlock& block) {
     constexpr float kTents = 1.5f;     // variance of down- and upsampling [px^2]
     constexpr float kRim = 5.0f / 12;  // added to the squared radius by a rim of width 1
     constexpr float kFromLattice =
         6.0f;  // circle [px] from which the continuous area is accurate enough
     const float shape = block.aperture.w;
-    const std::vector<GridPlace> places =
-        places_around(5, [&](const Vec2& at) { return radius_of_aperture(lens, at); });
+    const std::vector<GridPoint> points =
+        grid_points_around(5, [&](const Vec2& at) { return radius_of_aperture(lens, at); });
     for (int i = 0; i < layout::kFineTaps; ++i) {
-        block.texel[i] = Vec4(places[i].at, places[i].radius, 0);
+        block.texel[i] = Vec4(points[i].at, points[i].radius, 0);
     }
-    const float less = kRim + 0.25f * kTents / shape;
-    const auto beyond = [&](float radius) {
-        return std::sqrt(std::max(0.25f * radius * radius - less, 0.25f));
+    const float narrowing = kRim + 0.25f * kTents / shape;
+    const auto continuous_radius = [&](float radius) {
+        return std::sqrt(std::max(0.25f * radius * radius - narrowing, 0.25f));
     };
     float kernel = 0.5f;
     for (int i = 0; i < layout::kKernels; ++i) {
         const float radius = static_cast<float>(i) / static_cast<float>(layout::kKernelStep);
         const float target = 0.25f * (shape * radius * radius - kTents);
-        while (kernel < beyond(kFromLattice) && coverage_of(places, kernel).variance < target) {
+        while (kernel < continuous_radius(kFromLattice)
+               && coverage_of(points, kernel).variance < target) {
             kernel += 1.0f / 64;
         }
-        const float sigma = radius < kFromLattice ? kernel : beyond(radius);
+        const float sigma = radius < kFromLattice ? kernel : continuous_radius(radius);
         block.kernel[i / 2][2 * (i % 2)] = sigma;
-        block.kernel[i / 2][2 * (i % 2) + 1] = 1 / coverage_of(places, sigma).area;
+        block.kernel[i / 2][2 * (i % 2) + 1] = 1 / coverage_of(points, sigma).area;
     }
 }
 
@@ -143,7 +145,7 @@ struct FocusTextures {
     IVec2 quarter;
     TextureId tiles;
     TextureId slight_tiles;
-    TextureId near_reach;
+    TextureId small_near;
     TextureId packed;
     TextureId far_light;  ///< half resolution
     TextureId near_light;
@@ -153,9 +155,9 @@ struct FocusTextures {
     TextureId near_wide;
     TextureId wide_radii;
     TextureId behind_near;
-    TextureId far_rest;  ///< quarter resolution
-    TextureId near_rest;
-    TextureId rest_radii;
+    TextureId far_base;  ///< quarter resolution
+    TextureId near_base;
+    TextureId base_radii;
     TextureId behind;
     TextureId far_coarse;
     TextureId near_coarse;
@@ -169,13 +171,14 @@ int levels_of(const IVec2& size, int max_levels) {
 }
 
 /// Adds the passes in order.
-class Drawing {
+class DepthOfFieldDrawing {
   public:
-    Drawing(FrameGraph& graph, DepthOfFieldPass& pass, const RenderView& view, GLenum format)
+    DepthOfFieldDrawing(
+        FrameGraph& graph, DepthOfFieldPass& pass, const RenderView& view, GLenum format)
         : graph_(graph), pass_(pass), block_(make_focus_block(view)), format_(format),
           size_(view.width, view.height) {
-        made_.half = half_resolution(size_);
-        made_.quarter = half_resolution(made_.half);
+        textures_.half = half_resolution(size_);
+        textures_.quarter = half_resolution(textures_.half);
     }
 
     TextureId through_lens(TextureId radiance, TextureId depth);
@@ -203,7 +206,7 @@ class Drawing {
     layout::FocusBlock block_;
     GLenum format_;
     IVec2 size_;
-    FocusTextures made_;
+    FocusTextures textures_;
 };
 
 void use_fullscreen(PassContext& context, const gpu::Program* program, const gpu::Buffer& focus) {
@@ -222,12 +225,12 @@ void draw_tiles(
     context.device().draw(GL_TRIANGLE_STRIP, 0, 4, tiles);
 }
 
-void bind_tiles(PassContext& context, const FocusTextures& made) {
-    context.bind_texture(layout::kFocusTilesUnit, made.tiles);
-    context.bind_texture(layout::kFocusSlightTilesUnit, made.slight_tiles);
+void bind_tiles(PassContext& context, const FocusTextures& textures) {
+    context.bind_texture(layout::kFocusTilesUnit, textures.tiles);
+    context.bind_texture(layout::kFocusSlightTilesUnit, textures.slight_tiles);
 }
 
-void Drawing::find_tiles(TextureId depth) {
+void DepthOfFieldDrawing::find_tiles(TextureId depth) {
     const IVec2 count = {block_.tiles.x, block_.tiles.y};
     const IVec2 block_count = layout::kFocusTile / layout::kFocusBlock * count;
     const TextureId blocks = create("focus.blocks", GL_RGBA16F, block_count);
@@ -240,9 +243,9 @@ void Drawing::find_tiles(TextureId depth) {
             context.bind_texture(layout::kFocusDepthUnit, depth);
             context.device().draw_fullscreen();
         });
-    made_.near_reach = create("focus.near reach", GL_R16F, block_count);
+    textures_.small_near = create("focus.small near", GL_R16F, block_count);
     graph_.add_pass(
-        "focus.spread", {small_of_blocks}, {discarded(made_.near_reach)},
+        "focus.dilate blocks", {small_of_blocks}, {discarded(textures_.small_near)},
         [&pass = pass_, small_of_blocks](PassContext& context) {
             use_fullscreen(context, pass.spread, pass.focus);
             context.bind_texture(layout::kFocusSmallBlocksUnit, small_of_blocks);
@@ -258,49 +261,51 @@ void Drawing::find_tiles(TextureId depth) {
             context.bind_texture(layout::kFocusSmallBlocksUnit, small_of_blocks);
             context.device().draw_fullscreen();
         });
-    made_.tiles = create("focus.tiles", GL_RGBA16F, count);
-    made_.slight_tiles = create("focus.slight tiles", GL_RG16F, count);
+    textures_.tiles = create("focus.tiles", GL_RGBA16F, count);
+    textures_.slight_tiles = create("focus.slight tiles", GL_RG16F, count);
     graph_.add_pass(
-        "focus.reach", {own, small}, {discarded(made_.tiles), discarded(made_.slight_tiles)},
+        "focus.dilate", {own, small},
+        {discarded(textures_.tiles), discarded(textures_.slight_tiles)},
         [&pass = pass_, own, small](PassContext& context) {
-            use_fullscreen(context, pass.reach, pass.focus);
+            use_fullscreen(context, pass.dilate, pass.focus);
             context.bind_texture(layout::kFocusOwnTilesUnit, own);
             context.bind_texture(layout::kFocusOwnSmallUnit, small);
             context.device().draw_fullscreen();
         });
 }
 
-void Drawing::split(TextureId radiance, TextureId depth) {
-    made_.packed = create("focus.packed", format_, size_);
+void DepthOfFieldDrawing::split(TextureId radiance, TextureId depth) {
+    textures_.packed = create("focus.packed", format_, size_);
     graph_.add_pass(
-        "focus.pack", {radiance, depth}, {discarded(made_.packed)},
+        "focus.pack", {radiance, depth}, {discarded(textures_.packed)},
         [&pass = pass_, radiance, depth](PassContext& context) {
             use_fullscreen(context, pass.pack, pass.focus);
             context.bind_texture(layout::kFocusRadianceUnit, radiance);
             context.bind_texture(layout::kFocusDepthUnit, depth);
             context.device().draw_fullscreen();
         });
-    made_.far_light = create("focus.far", format_, made_.half);
-    made_.near_light = create("focus.near", format_, made_.half);
-    made_.far_kernels = create("focus.far kernels", format_, made_.half);
-    made_.near_kernels = create("focus.near kernels", pair_format(), made_.half);
-    made_.far_wide = create("focus.far wide", format_, made_.half);
-    made_.near_wide = create("focus.near wide", format_, made_.half);
-    made_.wide_radii = create("focus.wide radii", pair_format(), made_.half);
-    made_.behind_near = create("focus.behind near", format_, made_.half);
+    textures_.far_light = create("focus.far", format_, textures_.half);
+    textures_.near_light = create("focus.near", format_, textures_.half);
+    textures_.far_kernels = create("focus.far kernels", format_, textures_.half);
+    textures_.near_kernels = create("focus.near kernels", pair_format(), textures_.half);
+    textures_.far_wide = create("focus.far wide", format_, textures_.half);
+    textures_.near_wide = create("focus.near wide", format_, textures_.half);
+    textures_.wide_radii = create("focus.wide radii", pair_format(), textures_.half);
+    textures_.behind_near = create("focus.behind near", format_, textures_.half);
     graph_.add_pass(
-        "focus.split", {made_.packed, made_.tiles, made_.slight_tiles},
-        {cleared(made_.far_light), cleared(made_.near_light), cleared(made_.far_kernels),
-         cleared(made_.near_kernels), cleared(made_.far_wide), cleared(made_.near_wide),
-         cleared(made_.wide_radii), cleared(made_.behind_near)},
-        [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
-            context.bind_texture(layout::kFocusPackedUnit, made.packed);
-            bind_tiles(context, made);
-            draw_tiles(context, pass.split, pass.focus, kAnyBlurred, 2 * made.half, count);
+        "focus.split", {textures_.packed, textures_.tiles, textures_.slight_tiles},
+        {cleared(textures_.far_light), cleared(textures_.near_light),
+         cleared(textures_.far_kernels), cleared(textures_.near_kernels),
+         cleared(textures_.far_wide), cleared(textures_.near_wide), cleared(textures_.wide_radii),
+         cleared(textures_.behind_near)},
+        [&pass = pass_, textures = textures_, count = tile_count()](PassContext& context) {
+            context.bind_texture(layout::kFocusPackedUnit, textures.packed);
+            bind_tiles(context, textures);
+            draw_tiles(context, pass.split, pass.focus, kAnyBlurred, 2 * textures.half, count);
         });
 }
 
-void Drawing::fill_levels(TextureId texture, int levels) {
+void DepthOfFieldDrawing::fill_levels(TextureId texture, int levels) {
     if (levels > 1) {
         graph_.add_pass("focus.levels", {}, {image(texture)}, [texture](PassContext& context) {
             glGenerateTextureMipmap(context.texture(texture).id());
@@ -308,104 +313,111 @@ void Drawing::fill_levels(TextureId texture, int levels) {
     }
 }
 
-void Drawing::extract_highlights() {
-    const int luminance_levels = levels_of(made_.quarter, kLuminanceLevels);
+void DepthOfFieldDrawing::extract_highlights() {
+    const int luminance_levels = levels_of(textures_.quarter, kLuminanceLevels);
     const TextureId luminance =
-        create("focus.luminance", GL_RG32F, made_.quarter, luminance_levels);
+        create("focus.luminance", GL_RG32F, textures_.quarter, luminance_levels);
     graph_.add_pass(
-        "focus.light", {made_.near_light, made_.near_wide, made_.behind_near},
+        "focus.light", {textures_.near_light, textures_.near_wide, textures_.behind_near},
         {target_level(discarded(luminance), 0)},
-        [&pass = pass_, made = made_](PassContext& context) {
+        [&pass = pass_, textures = textures_](PassContext& context) {
             use_fullscreen(context, pass.light, pass.focus);
-            context.bind_texture(layout::kFocusNearLightUnit, made.near_light);
-            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
-            context.bind_texture(layout::kFocusBehindNearUnit, made.behind_near);
+            context.bind_texture(layout::kFocusNearLightUnit, textures.near_light);
+            context.bind_texture(layout::kFocusNearWideUnit, textures.near_wide);
+            context.bind_texture(layout::kFocusBehindNearUnit, textures.behind_near);
             context.device().draw_fullscreen();
         });
     fill_levels(luminance, luminance_levels);
 
-    const int levels = levels_of(made_.quarter, std::max(block_.tiles.w, 1));
-    const int hidden_levels = gpu::full_level_count(made_.quarter.x, made_.quarter.y);
-    made_.far_rest = create("focus.far rest", format_, made_.quarter, levels);
-    made_.near_rest = create("focus.near rest", format_, made_.quarter, levels);
-    made_.rest_radii = create("focus.rest radii", pair_format(), made_.quarter, levels);
-    made_.behind = create("focus.behind", format_, made_.quarter, hidden_levels);
+    const int levels = levels_of(textures_.quarter, std::max(block_.tiles.w, 1));
+    const int hidden_levels = gpu::full_level_count(textures_.quarter.x, textures_.quarter.y);
+    textures_.far_base = create("focus.far base", format_, textures_.quarter, levels);
+    textures_.near_base = create("focus.near base", format_, textures_.quarter, levels);
+    textures_.base_radii = create("focus.base radii", pair_format(), textures_.quarter, levels);
+    textures_.behind = create("focus.behind", format_, textures_.quarter, hidden_levels);
     graph_.add_pass(
-        "focus.rest",
-        {made_.far_wide, made_.near_wide, made_.wide_radii, made_.behind_near, luminance},
-        {target_level(discarded(made_.far_rest), 0), target_level(discarded(made_.near_rest), 0),
-         target_level(discarded(made_.rest_radii), 0), target_level(discarded(made_.behind), 0)},
-        [&pass = pass_, made = made_, luminance](PassContext& context) {
-            use_fullscreen(context, pass.rest, pass.focus);
-            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
-            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
-            context.bind_texture(layout::kFocusWideRadiiUnit, made.wide_radii);
-            context.bind_texture(layout::kFocusBehindNearUnit, made.behind_near);
+        "focus.base",
+        {textures_.far_wide, textures_.near_wide, textures_.wide_radii, textures_.behind_near,
+         luminance},
+        {target_level(discarded(textures_.far_base), 0),
+         target_level(discarded(textures_.near_base), 0),
+         target_level(discarded(textures_.base_radii), 0),
+         target_level(discarded(textures_.behind), 0)},
+        [&pass = pass_, textures = textures_, luminance](PassContext& context) {
+            use_fullscreen(context, pass.base, pass.focus);
+            context.bind_texture(layout::kFocusFarWideUnit, textures.far_wide);
+            context.bind_texture(layout::kFocusNearWideUnit, textures.near_wide);
+            context.bind_texture(layout::kFocusWideRadiiUnit, textures.wide_radii);
+            context.bind_texture(layout::kFocusBehindNearUnit, textures.behind_near);
             context.bind_texture(layout::kFocusLuminanceUnit, luminance);
             context.device().draw_fullscreen();
         });
-    fill_levels(made_.far_rest, levels);
-    fill_levels(made_.near_rest, levels);
-    fill_levels(made_.rest_radii, levels);
-    fill_levels(made_.behind, hidden_levels);
+    fill_levels(textures_.far_base, levels);
+    fill_levels(textures_.near_base, levels);
+    fill_levels(textures_.base_radii, levels);
+    fill_levels(textures_.behind, hidden_levels);
 }
 
-void Drawing::gather_coarse() {
-    made_.far_coarse = create("focus.far coarse", format_, made_.quarter);
-    made_.near_coarse = create("focus.near coarse", format_, made_.quarter);
-    made_.near_radius = create("focus.near radius", GL_R16F, made_.quarter);
+void DepthOfFieldDrawing::gather_coarse() {
+    textures_.far_coarse = create("focus.far coarse", format_, textures_.quarter);
+    textures_.near_coarse = create("focus.near coarse", format_, textures_.quarter);
+    textures_.near_radius = create("focus.near radius", GL_R16F, textures_.quarter);
     graph_.add_pass(
-        "focus.coarse", {made_.far_rest, made_.near_rest, made_.rest_radii, made_.tiles},
-        {discarded(made_.far_coarse), discarded(made_.near_coarse), discarded(made_.near_radius)},
-        [&pass = pass_, made = made_](PassContext& context) {
+        "focus.coarse",
+        {textures_.far_base, textures_.near_base, textures_.base_radii, textures_.tiles},
+        {discarded(textures_.far_coarse), discarded(textures_.near_coarse),
+         discarded(textures_.near_radius)},
+        [&pass = pass_, textures = textures_](PassContext& context) {
             use_fullscreen(context, pass.coarse, pass.focus);
-            context.bind_texture(layout::kFocusFarRestUnit, made.far_rest);
-            context.bind_texture(layout::kFocusNearRestUnit, made.near_rest);
-            context.bind_texture(layout::kFocusRestRadiiUnit, made.rest_radii);
-            context.bind_texture(layout::kFocusTilesUnit, made.tiles);
+            context.bind_texture(layout::kFocusFarBaseUnit, textures.far_base);
+            context.bind_texture(layout::kFocusNearBaseUnit, textures.near_base);
+            context.bind_texture(layout::kFocusBaseRadiiUnit, textures.base_radii);
+            context.bind_texture(layout::kFocusTilesUnit, textures.tiles);
             context.device().draw_fullscreen();
         });
 }
 
-void Drawing::gather() {
-    made_.far_blurred = create("focus.far blurred", format_, made_.half);
-    made_.near_blurred = create("focus.near blurred", format_, made_.half);
+void DepthOfFieldDrawing::gather() {
+    textures_.far_blurred = create("focus.far blurred", format_, textures_.half);
+    textures_.near_blurred = create("focus.near blurred", format_, textures_.half);
     graph_.add_pass(
         "focus.gather",
-        {made_.far_light, made_.near_light, made_.far_kernels, made_.near_kernels, made_.far_wide,
-         made_.far_coarse, made_.near_coarse, made_.near_radius, made_.tiles, made_.slight_tiles},
-        {cleared(made_.far_blurred), cleared(made_.near_blurred)},
-        [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
-            context.bind_texture(layout::kFocusFarLightUnit, made.far_light);
-            context.bind_texture(layout::kFocusNearLightUnit, made.near_light);
-            context.bind_texture(layout::kFocusFarKernelsUnit, made.far_kernels);
-            context.bind_texture(layout::kFocusNearKernelsUnit, made.near_kernels);
-            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
-            context.bind_texture(layout::kFocusFarCoarseUnit, made.far_coarse);
-            context.bind_texture(layout::kFocusNearCoarseUnit, made.near_coarse);
-            bind_tiles(context, made);
-            context.bind_texture(layout::kFocusNearRadiusUnit, made.near_radius);
-            draw_tiles(context, pass.gather, pass.focus, kAnyBlurred, 2 * made.half, count);
+        {textures_.far_light, textures_.near_light, textures_.far_kernels, textures_.near_kernels,
+         textures_.far_wide, textures_.far_coarse, textures_.near_coarse, textures_.near_radius,
+         textures_.tiles, textures_.slight_tiles},
+        {cleared(textures_.far_blurred), cleared(textures_.near_blurred)},
+        [&pass = pass_, textures = textures_, count = tile_count()](PassContext& context) {
+            context.bind_texture(layout::kFocusFarLightUnit, textures.far_light);
+            context.bind_texture(layout::kFocusNearLightUnit, textures.near_light);
+            context.bind_texture(layout::kFocusFarKernelsUnit, textures.far_kernels);
+            context.bind_texture(layout::kFocusNearKernelsUnit, textures.near_kernels);
+            context.bind_texture(layout::kFocusFarWideUnit, textures.far_wide);
+            context.bind_texture(layout::kFocusFarCoarseUnit, textures.far_coarse);
+            context.bind_texture(layout::kFocusNearCoarseUnit, textures.near_coarse);
+            bind_tiles(context, textures);
+            context.bind_texture(layout::kFocusNearRadiusUnit, textures.near_radius);
+            draw_tiles(context, pass.gather, pass.focus, kAnyBlurred, 2 * textures.half, count);
         });
 }
 
-TextureId Drawing::compose(TextureId radiance) {
+TextureId DepthOfFieldDrawing::compose(TextureId radiance) {
     const TextureId composed = create("radiance through lens", format_, size_);
     graph_.add_pass(
         "focus.compose",
-        {radiance, made_.packed, made_.far_blurred, made_.near_blurred, made_.behind,
-         made_.near_reach, made_.near_coarse, made_.tiles, made_.slight_tiles},
+        {radiance, textures_.packed, textures_.far_blurred, textures_.near_blurred,
+         textures_.behind, textures_.small_near, textures_.near_coarse, textures_.tiles,
+         textures_.slight_tiles},
         {discarded(composed)},
-        [&pass = pass_, made = made_, radiance, size = size_,
+        [&pass = pass_, textures = textures_, radiance, size = size_,
          count = tile_count()](PassContext& context) {
             context.bind_texture(layout::kFocusRadianceUnit, radiance);
-            context.bind_texture(layout::kFocusPackedUnit, made.packed);
-            context.bind_texture(layout::kFocusFarBlurredUnit, made.far_blurred);
-            context.bind_texture(layout::kFocusNearBlurredUnit, made.near_blurred);
-            context.bind_texture(layout::kFocusBehindNearUnit, made.behind);
-            context.bind_texture(layout::kFocusNearReachUnit, made.near_reach);
-            context.bind_texture(layout::kFocusNearCoarseUnit, made.near_coarse);
-            bind_tiles(context, made);
+            context.bind_texture(layout::kFocusPackedUnit, textures.packed);
+            context.bind_texture(layout::kFocusFarBlurredUnit, textures.far_blurred);
+            context.bind_texture(layout::kFocusNearBlurredUnit, textures.near_blurred);
+            context.bind_texture(layout::kFocusBehindNearUnit, textures.behind);
+            context.bind_texture(layout::kFocusSmallNearUnit, textures.small_near);
+            context.bind_texture(layout::kFocusNearCoarseUnit, textures.near_coarse);
+            bind_tiles(context, textures);
             for (int i = 0; i < 4; ++i) {
                 draw_tiles(context, pass.compose[i], pass.focus, 1 << i, size, count);
             }
@@ -413,31 +425,31 @@ TextureId Drawing::compose(TextureId radiance) {
     return composed;
 }
 
-void Drawing::draw_discs(TextureId composed, TextureId depth) {
+void DepthOfFieldDrawing::draw_discs(TextureId composed, TextureId depth) {
     graph_.add_pass(
         "focus.discs",
-        {depth, made_.packed, made_.far_wide, made_.near_wide, made_.far_rest, made_.near_rest,
-         made_.near_blurred, made_.tiles},
-        {composed}, [&pass = pass_, made = made_, depth](PassContext& context) {
+        {depth, textures_.packed, textures_.far_wide, textures_.near_wide, textures_.far_base,
+         textures_.near_base, textures_.near_blurred, textures_.tiles},
+        {composed}, [&pass = pass_, textures = textures_, depth](PassContext& context) {
             gpu::PipelineState add = gpu::kFullscreenState;
             add.blend = gpu::kBlendAdd;
             add.color_mask = 0b0111;
             context.device().use(gpu::Pipeline{pass.disc, add});
             context.device().bind_uniforms(layout::kFocusBinding, pass.focus);
-            pass.disc->set("texels", made.quarter);
-            context.bind_texture(layout::kFocusFarWideUnit, made.far_wide);
-            context.bind_texture(layout::kFocusNearWideUnit, made.near_wide);
-            context.bind_texture(layout::kFocusFarRestUnit, made.far_rest);
-            context.bind_texture(layout::kFocusNearRestUnit, made.near_rest);
-            context.bind_texture(layout::kFocusPackedUnit, made.packed);
-            context.bind_texture(layout::kFocusNearBlurredUnit, made.near_blurred);
+            pass.disc->set("texels", textures.quarter);
+            context.bind_texture(layout::kFocusFarWideUnit, textures.far_wide);
+            context.bind_texture(layout::kFocusNearWideUnit, textures.near_wide);
+            context.bind_texture(layout::kFocusFarBaseUnit, textures.far_base);
+            context.bind_texture(layout::kFocusNearBaseUnit, textures.near_base);
+            context.bind_texture(layout::kFocusPackedUnit, textures.packed);
+            context.bind_texture(layout::kFocusNearBlurredUnit, textures.near_blurred);
             context.bind_texture(layout::kFocusDepthUnit, depth);
-            context.bind_texture(layout::kFocusTilesUnit, made.tiles);
-            context.device().draw(GL_POINTS, 0, 2 * made.quarter.x * made.quarter.y);
+            context.bind_texture(layout::kFocusTilesUnit, textures.tiles);
+            context.device().draw(GL_POINTS, 0, 2 * textures.quarter.x * textures.quarter.y);
         });
 }
 
-TextureId Drawing::through_lens(TextureId radiance, TextureId depth) {
+TextureId DepthOfFieldDrawing::through_lens(TextureId radiance, TextureId depth) {
     find_tiles(depth);
     split(radiance, depth);
     extract_highlights();
@@ -448,7 +460,7 @@ TextureId Drawing::through_lens(TextureId radiance, TextureId depth) {
     return composed;
 }
 
-TextureId Drawing::by_mips(TextureId radiance, TextureId depth) {
+TextureId DepthOfFieldDrawing::by_mips(TextureId radiance, TextureId depth) {
     const int levels = gpu::full_level_count(size_.x, size_.y);
     const TextureId pyramid = create("focus.pyramid", format_, size_, levels);
     graph_.add_pass(
@@ -523,11 +535,11 @@ Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device) {
         {pass.blocks, "fullscreen.vert", "depth_of_field_blocks.frag", {}},
         {pass.spread, "fullscreen.vert", "depth_of_field_spread.frag", {}},
         {pass.tiles, "fullscreen.vert", "depth_of_field_tiles.frag", {}},
-        {pass.reach, "fullscreen.vert", "depth_of_field_reach.frag", {}},
+        {pass.dilate, "fullscreen.vert", "depth_of_field_dilate.frag", {}},
         {pass.pack, "fullscreen.vert", "depth_of_field_pack.frag", {}},
         {pass.split, "depth_of_field_tile.vert", "depth_of_field_split.frag", {}},
         {pass.light, "fullscreen.vert", "depth_of_field_light.frag", {}},
-        {pass.rest, "fullscreen.vert", "depth_of_field_rest.frag", {}},
+        {pass.base, "fullscreen.vert", "depth_of_field_base.frag", {}},
         {pass.coarse, "fullscreen.vert", "depth_of_field_coarse.frag", {}},
         {pass.gather, "depth_of_field_tile.vert", "depth_of_field_gather.frag", {}},
         {pass.compose[0], "depth_of_field_tile.vert", "depth_of_field_compose.frag", {}},
@@ -560,7 +572,7 @@ TextureId draw_depth_of_field(
     TextureId depth) {
     LIMN_CHECK(has_depth_of_field(view));
 
-    Drawing drawing(graph, pass, view, graph.spec(radiance).format);
+    DepthOfFieldDrawing drawing(graph, pass, view, graph.spec(radiance).format);
     return view.lens.method == FocusMethod::Mip ? drawing.by_mips(radiance, depth)
                                                 : drawing.through_lens(radiance, depth);
 }

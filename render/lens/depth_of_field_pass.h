@@ -9,25 +9,25 @@ namespace limn {
 // Depth of field: spreads out-of-focus light over its circle of confusion (thin_lens.h).
 //
 // Reads    radiance; LensDepth, or depth
-// Writes   radiance as seen through the lens
+// Writes   radiance through the lens
 // Order    after everything drawn into the scene and after motion blur, before glow
-// Shaders  focus_*; lib/depth_of_field.glsl, layout in depth_of_field_gpu.h
+// Shaders  depth_of_field_*; lib/depth_of_field.glsl, layout in depth_of_field_gpu.h
 //
 // Circles of up to 5 px are gathered at full resolution. Wider ones are gathered at half
-// resolution, far and near field separately: up to a radius of 8 px, every texel around is tested
-// for whether its circle reaches the current one, weighted by the inverse of the circle's area.
+// resolution, far and near field separately: up to a radius of 8 px, every neighboring texel is
+// tested for whether its circle covers the current one, and weighted by the inverse of its area.
 // Wider circles are gathered at quarter resolution with up to 48 taps, on mip levels coarse enough
 // to leave no gaps. In-focus surfaces therefore never leak into blurred ones, and the near field
 // spreads over what is behind it; what it hides there is inpainted from its surroundings. Behind
-// the focus, clearly narrower circles lie over the rest, similar ones beside it. Highlights with
-// wide circles, which would reveal the tap pattern, are extracted and drawn as discs at full
-// resolution. A disc must add some percent to its surroundings to be drawn, which bounds the
-// overdraw.
+// the focus, clearly narrower circles are composited over the others, similar ones are averaged.
+// Highlights with wide circles, which would reveal the tap pattern, are extracted and drawn as
+// discs at full resolution. A disc is drawn only if it brightens its surroundings by some percent,
+// which bounds the overdraw.
 //
-// Tiles of 16 px are classified: where all is in focus, the pass only copies. Blended surfaces are
-// as sharp as what is behind them; so are particles, but where they cover most of a pixel. After
-// Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (2014), and Abadie,
-// "A Life of a Bokeh" (2018).
+// Tiles of 16 px are classified: a tile in focus is only copied. Blended surfaces are as
+// sharp as the surface behind them; so are particles, except where they cover most of a pixel.
+// After Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (2014), and
+// Abadie, "A Life of a Bokeh" (2018).
 //
 // FocusMethod::Mip is the cheapest method (post.dof-mip): sharp surfaces leak into blurred ones,
 // near ones keep their outline, discs are squares.
@@ -36,11 +36,11 @@ struct DepthOfFieldPass {
     const gpu::Program* blocks = nullptr;
     const gpu::Program* spread = nullptr;
     const gpu::Program* tiles = nullptr;
-    const gpu::Program* reach = nullptr;
+    const gpu::Program* dilate = nullptr;
     const gpu::Program* pack = nullptr;
     const gpu::Program* split = nullptr;
     const gpu::Program* light = nullptr;
-    const gpu::Program* rest = nullptr;
+    const gpu::Program* base = nullptr;
     const gpu::Program* coarse = nullptr;
     const gpu::Program* gather = nullptr;
     const gpu::Program* compose[4] = {};  ///< [1]: with small circles, [2]: with large ones

@@ -39,11 +39,12 @@ void draw_line(
             {sampled(source, layout::kSourceUnit, &pass.black_border),
              sampled(sum, layout::kGlareSumUnit, &pass.black_border)},
             {target}, pass.streak, state,
-            [share = std::exp2(-static_cast<float>(i)) / whole, sum_weight = first ? 0.0f : 1.0f,
+            [source_weight = std::exp2(-static_cast<float>(i)) / whole,
+             sum_weight = first ? 0.0f : 1.0f,
              offset = unit * std::exp2(static_cast<float>(i))
                       * direction](PassContext&, const gpu::Program& program) {
                 program.set("offset", offset);
-                program.set("share", share);
+                program.set("source_weight", source_weight);
                 program.set("sum_weight", sum_weight);
             });
         sum = next;

@@ -12,10 +12,10 @@ namespace limn {
 //     out = I + strength * star(I (1 - threshold / luminance))
 //
 // Each edge diffracts light to both sides, perpendicular to itself; along such a streak intensity
-// falls off with the square of the distance, and longer wavelengths reach farther. A streak is a
+// falls off with the square of the distance, and longer wavelengths spread farther. A streak is a
 // sum of tent filters, each twice as long as the previous one, from reads twice as far apart in
 // each pass; a star conserves the light of its source, except for what leaves the image. Spectral
-// bands, which daylight blurs away, are left out.
+// bands, which blur away in daylight, are left out.
 //
 // Reads    radiance
 // Writes   radiance with glare

@@ -35,14 +35,14 @@ TextureId draw_first(
     return first;
 }
 
-constexpr int kTwiceReach = 5;  // texels beyond the border that glow_step.frag reads at most
+constexpr int kTwiceBorder = 5;  // texels beyond the border that glow_step.frag reads at most
 
 int length_along(const IVec2& axis, const IVec2& size) {
     return size.x * axis.x + size.y * axis.y;
 }
 
 const gpu::Program* down_program(const GlowPass& pass, int from, int to) {
-    return from == 2 * to && from >= kTwiceReach ? pass.down_twice : pass.down;
+    return from == 2 * to && from >= kTwiceBorder ? pass.down_twice : pass.down;
 }
 
 const gpu::Program* up_program(const GlowPass& pass, int from, int to) {
@@ -94,7 +94,7 @@ void step_up(
     draw_axis(graph, pass, true, between, Use(larger), {1, 0}, 1, state);
 }
 
-/// The image and its glow, put together by `program`.
+/// The image combined with its glow by `program`.
 TextureId compose(
     FrameGraph& graph, const gpu::Program* program, TextureId radiance, TextureId glow,
     float strength) {
@@ -155,14 +155,14 @@ std::vector<float> glow_weights(const Glow& glow, int width, int height) {
     float sum = 0;
     IVec2 size = half_resolution({width, height});
     for (int level = 2; level <= kMaxLevels; ++level) {
-        const float share = std::clamp(depth - static_cast<float>(level - 1), 0.0f, 1.0f);
+        const float fade = std::clamp(depth - static_cast<float>(level - 1), 0.0f, 1.0f);
         const bool first = level == 2;
-        if (!first && (share == 0 || size == IVec2(1))) {
+        if (!first && (fade == 0 || size == IVec2(1))) {
             break;
         }
         // A level of twice the size has a quarter of the density.
         const float density = std::exp2((2.0f - glow.falloff) * static_cast<float>(level));
-        weights.push_back(density * (first ? 1.0f : share));
+        weights.push_back(density * (first ? 1.0f : fade));
         sum += weights.back();
         size = half_resolution(size);
     }

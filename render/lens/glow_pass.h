@@ -16,7 +16,7 @@ namespace limn {
 // filter two texels wide, U is its transpose, bilinear interpolation; both smooth a little more (1
 // 2 1), so that the levels' grids do not show and each level is nearly a Gaussian. D and U conserve
 // the total light exactly, also at odd sizes and at the border, where the image is mirrored so that
-// what would leave it comes back. Weights that fall with the level make the sum a power of the
+// no light leaves it. Weights that fall with the level make the sum a power of the
 // distance, like the halo of a real lens.
 //
 // Reads    radiance
@@ -65,8 +65,8 @@ struct GlowMaskPass {
     SeparableBlur blur;
 };
 
-/// Glow of the kind that the world asks for. That of a lens is not part of the samples of an
-/// accumulated image, but of their mean; a mask needs the surfaces, which a mean has none of.
+/// Glow of the kind that the world requests. Glow of a lens is added to the mean of an accumulated
+/// image, not to its samples; a mask to the samples, since it needs their surfaces.
 struct GlowEffect {
     GlowPass lens;
     GlowMaskPass mask;

@@ -6,8 +6,8 @@ namespace limn {
 
 // Techniques: particle.depth-of-field
 
-/// Depth of what the lens focuses on in each pixel: that of the view, but where particles cover
-/// enough of the pixel, theirs. Published by ParticleFrontEffect, where there are such.
+/// Depth that focus is computed from: that of the view, or of particles where these cover enough of
+/// a pixel. Published by ParticleFrontEffect if there are such particles.
 struct LensDepth {
     TextureId depth;
 };

@@ -38,7 +38,7 @@ double polygon_radius(int blades) {
     return blades < 3 ? 1 : std::sqrt(2 * kPi / (n * std::sin(2 * kPi / n)));
 }
 
-/// Where a ray that ends at `p` in the image meets a rim, in units of its radius:
+/// Where a ray that ends at `p` in the image crosses the plane of a rim, in units of its radius:
 /// scale p + offset t for a light at t.
 struct Rim {
     double scale = 1;
@@ -46,15 +46,15 @@ struct Rim {
     FlareShape shape = FlareShape::Disc;
 };
 
-/// A rim of `radius` where rays arrive as `at` says, seen in a ghost with the map `sensor`; lengths
-/// in focal lengths. Images are upside down on the sensor, so that the slope is t, not -t.
+/// A rim of `radius` at which rays arrive by the map `at`, as imaged in a ghost with the map
+/// `sensor`; lengths in focal lengths. Images are upside down on the sensor, so that the slope is
+/// t, not -t.
 Rim make_rim(const ParaxialMap& at, double radius, const ParaxialMap& sensor, FlareShape shape) {
     const double scale = at.height / (sensor.height * radius);
     return {scale, at.slope / radius - sensor.slope * scale, shape};
 }
 
-/// The part of the image within all `rims`, of which each point of a light has one; `radiance` is
-/// that of a small light.
+/// The part of the image within all `rims`; `radiance` is that for a light of size 0.
 FlareSprite make_sprite(
     std::span<const Rim> rims, const FlareLight& light, double source, double min_softness,
     const Vec3& radiance) {
@@ -63,21 +63,21 @@ FlareSprite make_sprite(
             return std::abs(a.scale) < std::abs(b.scale);
         });
     const double radius = 1 / std::abs(tightest.scale);
-    const double place = -tightest.offset / tightest.scale;
-    const double softness = std::max(std::abs(place) * source, min_softness);
+    const double position = -tightest.offset / tightest.scale;
+    const double softness = std::max(std::abs(position) * source, min_softness);
     // An edge with the profile of smoothstep from r - s to r + s holds as much light as a sharp one
-    // at sqrt(r^2 + s^2 / 5); it must not reach beyond the center.
+    // at sqrt(r^2 + s^2 / 5); it must not extend beyond the center.
     const double drawn = std::max(radius, softness);
     const double thinner = square(radius) / (square(drawn) + square(softness) / 5);
 
     FlareSprite sprite;
-    sprite.center = static_cast<float>(place) * light.tangent;
+    sprite.center = static_cast<float>(position) * light.tangent;
     sprite.radius = static_cast<float>(drawn + softness);
     sprite.softness = static_cast<float>(softness);
     sprite.radiance = static_cast<float>(thinner) * radiance;
     for (std::size_t i = 0; i < rims.size(); ++i) {
         const double scale = rims[i].scale * radius / drawn;
-        const double offset = rims[i].offset + (rims[i].scale - scale) * place;
+        const double offset = rims[i].offset + (rims[i].scale - scale) * position;
         sprite.rims[i] = {
             scale, Vec2(static_cast<float>(offset) * light.tangent),
             static_cast<float>(rims[i].shape)};
@@ -135,7 +135,7 @@ std::vector<FlareSprite> make_billboards(
     return sprites;
 }
 
-/// At `eye`, as lib/light.glsl has it [lx].
+/// Illuminance at `eye` [lx], as in lib/light.glsl.
 Vec3 illuminance_at(const Vec3& eye, const layout::LightRecord& light) {
     const Vec3 offset = Vec3(light.position) - eye;
     const float d2 = glm::dot(offset, offset);
@@ -155,26 +155,26 @@ Vec3 illuminance_at(const Vec3& eye, const layout::LightRecord& light) {
     return distance * (smooth ? s * s * (3 - 2 * s) : s) * Vec3(light.color);
 }
 
-/// A light in the image, and how it is seen.
-struct SeenLight {
+/// A light in the image, and the disk that tests its visibility.
+struct VisibleLight {
     FlareLight light;
     DiskSource source;
 };
 
 /// The brightest lights in or close to the image.
-std::vector<SeenLight>
+std::vector<VisibleLight>
 find_lights(const LightList& list, const RenderView& view, const LensFlare& flare) {
     const Affine& pose = view.world_from_camera;
     const Vec3 eye = {pose.row[0].w, pose.row[1].w, pose.row[2].w};
     const float radius = 0.5f * flare.source_size * static_cast<float>(view.height);
     const Vec2 margin = 1.0f + 2 * radius / Vec2(view.width, view.height);
-    std::vector<SeenLight> lights;
+    std::vector<VisibleLight> lights;
     for (std::size_t i = 0; i < list.records.size(); ++i) {
         const layout::LightRecord& record = list.records[i];
         const bool distant = i < static_cast<std::size_t>(list.directional);
-        const Vec4 place = {Vec3(record.position), distant ? 0.0f : 1.0f};
-        const Vec4 clip = view.unjittered_from_world * place;
-        const Vec4 jittered = view.clip_from_world * place;
+        const Vec4 position = {Vec3(record.position), distant ? 0.0f : 1.0f};
+        const Vec4 clip = view.unjittered_from_world * position;
+        const Vec4 jittered = view.clip_from_world * position;
         const Vec2 ndc = Vec2(clip) / clip.w;
         if (!(clip.w > view.near || (distant && clip.w > 0))
             || glm::any(glm::greaterThan(glm::abs(ndc), margin))) {
@@ -192,7 +192,7 @@ find_lights(const LightList& list, const RenderView& view, const LensFlare& flar
     const auto kept = static_cast<std::ptrdiff_t>(std::min(lights.size(), kMaxLights));
     std::partial_sort(
         lights.begin(), lights.begin() + kept, lights.end(),
-        [](const SeenLight& a, const SeenLight& b) {
+        [](const VisibleLight& a, const VisibleLight& b) {
             return luminance(a.light.illuminance) > luminance(b.light.illuminance);
         });
     lights.resize(kept);
@@ -226,13 +226,14 @@ void LensFlareEffect::collect(FrameData& frame) {
     flare = within_ranges(*find_flare(frame));
     sources.clear();
     sprites.clear();
-    for (const SeenLight& seen : find_lights(frame.data.get<LightList>(), frame.camera, flare)) {
-        for (FlareSprite& drawn :
-             make_flare_sprites(flare, seen.light, frame.camera.tangent.y, frame.camera.height)) {
+    for (const VisibleLight& visible :
+         find_lights(frame.data.get<LightList>(), frame.camera, flare)) {
+        for (FlareSprite& drawn : make_flare_sprites(
+                 flare, visible.light, frame.camera.tangent.y, frame.camera.height)) {
             drawn.light = static_cast<float>(sources.size());
             sprites.push_back(drawn);
         }
-        sources.push_back(seen.source);
+        sources.push_back(visible.source);
     }
     source_records.upload(*frame.ring, sources);
     sprite_records.upload(*frame.ring, sprites);

@@ -9,40 +9,39 @@
 
 namespace limn {
 
-// Lens flare: what the surfaces of the lens reflect of the lights in view (engine.lens-flare).
+// Lens flare: reflections of the lights in view on the surfaces of the lens (engine.lens-flare).
 //
 // Reads    radiance, depth; LightList, LensFlare of the camera
 // Writes   radiance, a new texture
-// Order    after depth of field, which blurs what is before the lens, not what is within it; before
-//          glow
-// Shaders  disk_visibility.frag, lens_flare.vert, lens_flare.frag, glow_add.frag
+// Order    after depth of field, which blurs the scene, not reflections within the lens; before
+// glow Shaders  disk_visibility.frag, lens_flare.vert, lens_flare.frag, glow_add.frag
 //
-// A ghost is a sprite at half resolution. A pixel p of it is light that met the aperture stop at
-// scale p + offset, both from the ABCD matrices of the ghost (lens_ghosts.h); where that is outside
-// the polygon of the stop, at any of its passages, or outside the front surface, there is none. Its
-// irradiance on the sensor is that at the front of the lens times the ratio of the areas and the
-// ghost's strength; as the scene's radiance L gives the irradiance pi L / (4 N^2), it is drawn with
-// the radiance that would expose the sensor as much. The finite size of a light softens the edges
-// and conserves the light of the ghost.
+// A ghost is a sprite at half resolution. Light in its pixel p has passed the aperture stop at
+// scale p + offset, both from the ABCD matrices of the ghost (lens_ghosts.h); there is none where
+// that is outside the polygon of the stop, at any of its passages, or outside the front surface.
+// Its irradiance on the sensor is that at the front of the lens times the ratio of the areas and
+// the ghost's strength; as the scene's radiance L gives the irradiance pi L / (4 N^2), it is drawn
+// with the radiance that would expose the sensor as much. The finite size of a light softens the
+// edges and conserves the light of the ghost.
 //
-// A light counts as far as the samples of a disk about it are behind nothing in the depth buffer,
-// and within the image, all on the GPU. Blended surfaces and particles hide nothing.
+// A light is visible by the fraction of the samples of a disk around it that pass the depth test
+// and lie within the image, all on the GPU. Blended surfaces and particles do not occlude it.
 
-/// A light as the lens sees it.
+/// A light in the view of the lens.
 struct FlareLight {
-    Vec2 tangent = {0, 0};  ///< its place in the image, as tangent of the angle to the view axis
+    Vec2 tangent = {0, 0};  ///< its position in the image: tangent of the angle to the view axis
     Vec3 illuminance = {0, 0, 0};  ///< at the camera [lx]
 };
 
 /// Layout of lens_flare.vert: six texels. Lengths in the image are tangents of angles.
 struct FlareSprite {
     Vec2 center = {0, 0};
-    float radius = 0;  ///< of a circle about all of it
-    float light = 0;   ///< number of its light
+    float radius = 0;  ///< of a circle around all of it
+    float light = 0;   ///< index of its light
     Vec3 radiance = {0, 0, 0};
     float softness = 0;  ///< half of the width of its edge
-    /// Where a ray meets a rim, in units of its radius: x * p + (y, z). w: FlareShape of the rim,
-    /// or -1 for none.
+    /// Where a ray crosses the plane of a rim, in units of its radius: x * p + (y, z). w:
+    /// FlareShape of the rim, or -1 for none.
     Vec4 rims[4] = {{0, 0, 0, -1}, {0, 0, 0, -1}, {0, 0, 0, -1}, {0, 0, 0, -1}};
 };
 

@@ -18,21 +18,21 @@ constexpr LensSurface kDoubleGauss[] = {
     {437.065, 3.22, 1.717, 20}, {-39.73, 0, 1, 20}};
 
 constexpr double kMagnesiumFluoride = 1.38;
-/// Of the primaries of Rec. 709 [nm].
+/// Wavelengths of the primaries of Rec. 709 [nm].
 constexpr double kWavelengths[3] = {611, 549, 464};
 
 double index_before(std::span<const LensSurface> lens, int surface) {
     return surface > 0 ? lens[surface - 1].index : 1;
 }
 
-/// A ray on its way through a lens: its matrix so far, from the front surface.
+/// A ray traced through a lens: its matrix so far, from the front surface.
 class ParaxialPath {
   public:
     explicit ParaxialPath(std::span<const LensSurface> lens) : lens_(lens) {}
 
     void move(double distance) { apply({1, 0, distance, 1}); }  // columns
     void reflect(int surface, bool forward) { apply({1, 2 / radius(surface, forward), 0, 1}); }
-    /// Through `surface`, or through the aperture, where it notes the row.
+    /// Through `surface`, or through the aperture, whose row it records.
     void pass(int surface, bool forward) {
         if (lens_[surface].radius == 0) {
             stops.push_back(row());
@@ -78,7 +78,7 @@ double reflectance(
     const double before = index_before(lens, surface);
     const double behind = lens[surface].index;
     const bool cemented = before != 1 && behind != 1;
-    // Multiples of the golden ratio are spread evenly, and no two neighbors are alike.
+    // Multiples of the golden ratio: evenly spread, and neighbors differ.
     const double turn = surface * std::numbers::phi;
     const double shift = coating.spread * (2 * (turn - std::floor(turn)) - 1);
     const double made_for =
@@ -86,7 +86,7 @@ double reflectance(
     return coated_reflectance(before, kMagnesiumFluoride, behind, made_for, wavelength);
 }
 
-/// Surfaces between the two are passed twice more than by light that is not reflected.
+/// Light crosses the surfaces between the two twice more than on the direct path.
 double ghost_strength(
     std::span<const LensSurface> lens, int near, int far, const LensCoating& coating,
     double wavelength) {

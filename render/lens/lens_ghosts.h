@@ -8,24 +8,25 @@
 namespace limn {
 
 // Ghosts of a photographic lens (engine.lens-flare): light that two of its surfaces reflect before
-// it reaches the sensor.
+// it arrives at the sensor.
 //
-// Paraxial rays have a height y and a slope u, and everything that happens to them is linear:
+// Paraxial rays have a height y and a slope u, which every event transforms linearly:
 //
 //     (y, u) <- [1 d; 0 1] (y, u)                 over the distance d
 //               [1 0; (n/n' - 1)/R  n/n'] (y, u)  refracted from index n to n' at radius R
 //               [1 0; 2/R 1] (y, u)               reflected
 //
 // with R > 0 where the center of curvature lies ahead. The product of the matrices of a path is its
-// ray transfer (ABCD) matrix, whose first row says where a ray meets a plane. Each pair of surfaces
-// is a path: a ghost, and an image of the aperture stop whose place and size follow from the rows
-// for the stop and the sensor. After Hullin et al., "Physically-Based Real-Time Lens Flare
-// Rendering", 2011, and Lee and Eisemann, "Practical Real-Time Lens-Flare Rendering", 2013.
+// ray transfer (ABCD) matrix, whose first row gives the height at which a ray crosses a plane. Each
+// pair of surfaces is a path: a ghost, and an image of the aperture stop whose position and size
+// follow from the rows for the stop and the sensor. After Hullin et al., "Physically-Based
+// Real-Time Lens Flare Rendering", 2011, and Lee and Eisemann, "Practical Real-Time Lens-Flare
+// Rendering", 2013.
 //
-// What is left out: dispersion, aberrations (ghosts of strongly tilted light are bent and have
+// Left out: dispersion, aberrations (ghosts of strongly tilted light are bent and have
 // caustics), paths of more than two reflections, rims other than that of the front surface.
 
-/// A spherical surface, in the order in which light meets them.
+/// A spherical surface; listed in the order in which light crosses them.
 struct LensSurface {
     double radius = 0;     ///< of curvature [mm], > 0: convex toward the front; 0: the aperture
     double thickness = 0;  ///< distance to the next surface [mm]
@@ -43,7 +44,7 @@ struct ParaxialMap {
     double slope = 0;
 };
 
-/// The path that is not reflected, of light from infinity.
+/// The direct path of light from infinity.
 struct LensFocus {
     double focal_length = 0;    ///< [mm]
     double image_distance = 0;  ///< from the last surface to the sensor [mm]
@@ -59,17 +60,17 @@ struct LensGhost {
     ParaxialMap sensor = {};
     ParaxialMap stop[3] = {};  ///< at each of its passages
     int passages = 0;
-    Vec3 strength = {0, 0, 0};  ///< transmittance relative to the path that is not reflected
+    Vec3 strength = {0, 0, 0};  ///< transmittance relative to the direct path
 };
 
 /// Anti-reflective coatings, a quarter wave of magnesium fluoride on each surface between glass and
 /// air. Cemented surfaces have none.
 struct LensCoating {
-    double wavelength = 550;  ///< for which they are made [nm]; 0: none
-    double spread = 0;        ///< largest difference from that, other for each surface [nm]
+    double wavelength = 550;  ///< at which they are optimal [nm]; 0: no coating
+    double spread = 0;        ///< largest difference from that; varies per surface [nm]
 };
 
-/// Of every pair of surfaces.
+/// The ghosts of all pairs of surfaces.
 [[nodiscard]] std::vector<LensGhost>
 make_lens_ghosts(std::span<const LensSurface> lens, const LensCoating& coating);
 

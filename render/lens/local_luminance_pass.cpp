@@ -15,9 +15,9 @@ namespace limn {
 namespace {
 
 constexpr int kFineRadius = 4;  // kernel radius of each level [texels]
-constexpr int kMiddleRadius = 11;
+constexpr int kMediumRadius = 11;
 constexpr int kCoarseRadius = 14;
-constexpr int kMiddleStep = 2;  // pixels per texel
+constexpr int kMediumStep = 2;  // pixels per texel
 constexpr int kCoarseStep = 4;
 constexpr double kBox2 = 0.25;         // variance of the mean of two neighbors [texels^2]
 constexpr double kBilinear = 1.0 / 6;  // mean variance added by bilinear filtering [texels^2]
@@ -54,8 +54,8 @@ std::array<double, 16> gaussian_of_variance(double variance, int radius) {
     double low = 1e-3;
     double high = 2 * variance + 1;
     for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (low + high);
-        (variance_of(sample_gaussian(middle, radius)) < variance ? low : high) = middle;
+        const double mid = 0.5 * (low + high);
+        (variance_of(sample_gaussian(mid, radius)) < variance ? low : high) = mid;
     }
     return sample_gaussian(low, radius);
 }
@@ -114,7 +114,7 @@ TextureId blur_level(
     return blur_along(graph, name, level.up, level.weights, across, {0, 1});
 }
 
-TextureId shrink(
+TextureId downsample_luminance(
     FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
     const IVec2& size) {
     const TextureId target = create_target(graph, name, GL_R32F, size);
@@ -130,20 +130,20 @@ TextureId shrink(
 
 Result<LocalLuminancePass> create_local_luminance_pass(gpu::Device& device) {
     Weights fine;
-    Weights middle;
+    Weights medium;
     Weights coarse{};
     for (int k = 0; k < 4; ++k) {
         fine[k] = sample_gaussian(scale_variance(k), kFineRadius);
-        middle[k] = remaining(4 + k, scale_variance(3) + kBox2, kMiddleStep, kMiddleRadius);
+        medium[k] = remaining(4 + k, scale_variance(3) + kBox2, kMediumStep, kMediumRadius);
     }
     for (int k = 0; k < 2; ++k) {
-        const double done = scale_variance(7) + kBox2 * kMiddleStep * kMiddleStep;
+        const double done = scale_variance(7) + kBox2 * kMediumStep * kMediumStep;
         coarse[k] = remaining(8 + k, done, kCoarseStep, kCoarseRadius);
     }
     return LocalLuminancePass{
         LIMN_TRY(create_level(device, "fine blurs", BlurSource::Radiance, kFineRadius, fine)),
         LIMN_TRY(
-            create_level(device, "middle blurs", BlurSource::OneComponent, kMiddleRadius, middle)),
+            create_level(device, "medium blurs", BlurSource::OneComponent, kMediumRadius, medium)),
         LIMN_TRY(
             create_level(device, "coarse blurs", BlurSource::OneComponent, kCoarseRadius, coarse)),
         LIMN_TRY(load_fullscreen(device, "local_shrink.frag"))};
@@ -152,18 +152,18 @@ Result<LocalLuminancePass> create_local_luminance_pass(gpu::Device& device) {
 LocalLuminance
 blur_luminance(FrameGraph& graph, const LocalLuminancePass& pass, TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
-    const auto smaller = [&spec](int step) {
+    const auto reduced_size = [&spec](int step) {
         return IVec2((spec.width + step - 1) / step, (spec.height + step - 1) / step);
     };
-    LocalLuminance made;
-    made.fine = blur_level(graph, "local.fine across", "local.fine", pass.fine, radiance);
-    const TextureId half =
-        shrink(graph, "local.half", pass.shrink, made.fine, smaller(kMiddleStep));
-    made.middle = blur_level(graph, "local.middle across", "local.middle", pass.middle, half);
-    const TextureId quarter =
-        shrink(graph, "local.quarter", pass.shrink, made.middle, smaller(kCoarseStep));
-    made.coarse = blur_level(graph, "local.coarse across", "local.coarse", pass.coarse, quarter);
-    return made;
+    LocalLuminance blurs;
+    blurs.fine = blur_level(graph, "local.fine across", "local.fine", pass.fine, radiance);
+    const TextureId half = downsample_luminance(
+        graph, "local.half", pass.downsample, blurs.fine, reduced_size(kMediumStep));
+    blurs.medium = blur_level(graph, "local.medium across", "local.medium", pass.medium, half);
+    const TextureId quarter = downsample_luminance(
+        graph, "local.quarter", pass.downsample, blurs.medium, reduced_size(kCoarseStep));
+    blurs.coarse = blur_level(graph, "local.coarse across", "local.coarse", pass.coarse, quarter);
+    return blurs;
 }
 
 }  // namespace limn

@@ -16,12 +16,12 @@ namespace limn {
 //
 // Four blurs share each pair of passes, one per channel. The wide ones start from an image that is
 // already blurred and can therefore be smaller; variances add, so the remaining blur is known. The
-// results differ from true Gaussians by some percent where a single pixel outshines everything.
+// results differ from true Gaussians by some percent around a single very bright pixel.
 
 /// Luminance blurred for dodge and burn: scale i is a Gaussian of variance 1.6^(2 i) / 16 [px^2].
 struct LocalLuminance {
     TextureId fine;    ///< scales 0 .. 3, full resolution
-    TextureId middle;  ///< 4 .. 7, half resolution
+    TextureId medium;  ///< 4 .. 7, half resolution
     TextureId coarse;  ///< 8 and 9, quarter resolution
 };
 
@@ -32,9 +32,9 @@ struct LocalLuminancePass {
         gpu::Buffer weights;  ///< BlurWeights
     };
     Level fine;
-    Level middle;
+    Level medium;
     Level coarse;
-    const gpu::Program* shrink = nullptr;
+    const gpu::Program* downsample = nullptr;
 };
 
 [[nodiscard]] Result<LocalLuminancePass> create_local_luminance_pass(gpu::Device& device);

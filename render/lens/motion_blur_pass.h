@@ -9,7 +9,7 @@
 
 namespace limn {
 
-// Blurs what moves while the shutter is open, by gathering along two or three directions.
+// Motion blur of a single frame, gathered along two or three directions.
 //
 // Reads    radiance, depth, velocity
 // Writes   radiance: a new texture
@@ -19,20 +19,21 @@ namespace limn {
 //
 // Velocity spans the time between two frames; the exposure is the fraction shutter / 360 of it,
 // centered, so a pixel's blur extends over +-v shutter / 720. The maximum velocity of each tile is
-// spread to the tiles that it reaches, so that pixels outside a silhouette know where to sample.
+// dilated to the tiles that it extends into, so that pixels outside a silhouette know where to
+// sample.
 //
-// A pixel is composed of three layers. In front is what arrives from elsewhere: a sample blurred
-// over a length l covers a point for 1/l of the exposure, so coverages add up. Its own layer is
-// what moves alike, whatever its depth: within it, occlusion is that of the time drawn. Where that
-// layer ends within the pixel's own blur, the background shows, taken from beside the silhouette as
-// the nearest guess. A static object is thus not affected by what moves behind it, nor does it
-// bleed into that.
+// A pixel is composed of three layers. In front are surfaces that move across it: a sample blurred
+// over a length l covers a point for 1/l of the exposure, so coverages add up. Its own layer are
+// pixels with the same motion, whatever their depth: within it, occlusion is that of the frame.
+// Where that layer ends within the pixel's own blur, the background shows, estimated by pixels next
+// to the silhouette. A static object is thus not affected by motion behind it, nor does it bleed
+// into that.
 //
 // After M. McGuire, P. Hennessy, M. Bukowski, B. Osman, "A Reconstruction Filter for Plausible
 // Motion Blur", 2012; J.-P. Guertin, M. McGuire, D. Nowrouzezahrai, "A Fast and Stable
 // Feature-Aware Motion Blur Filter", 2014; J. Jimenez, "Next Generation Post Processing in Call of
 // Duty: Advanced Warfare", 2014. Limits: motion is assumed straight and uniform, hidden surfaces
-// are unknown, and blended surfaces move with what is behind them.
+// are unknown, and blended surfaces move with the surface behind them.
 
 struct MotionReconstruct {
     const gpu::Program* pack = nullptr;
@@ -48,7 +49,7 @@ struct MotionReconstruct {
 using MotionMethod = std::variant<
     std::monostate, MotionReconstruct, MotionAccumulate, MotionCamera, MotionFlow, MotionStretch>;
 
-/// Motion blur in the mode that the world asks for. Left out of the samples of an accumulated image
+/// Motion blur in the mode that the world requests. Skipped for the samples of an accumulated image
 /// if these are instants, whose mean is blurred, or if the mode keeps frames.
 struct MotionBlurEffect {
     MotionBlur settings = {};                    ///< of the frame

@@ -8,7 +8,7 @@
 namespace limn {
 
 // The older modes of MotionBlur, kept for comparison. Each returns a new texture; `follows`: it was
-// in use in the frame before, which this one follows without a cut.
+// in use in the previous frame, which this one follows without a cut.
 
 // Motion blur by accumulation: the mean of the last frames (post.motion-blur-accumulation, method
 // B). Shading and shadows blur correctly too; fast objects leave discrete ghost copies, the
@@ -35,7 +35,7 @@ struct MotionAccumulate {
     blur(FrameGraph& graph, const MotionBlur& settings, const ViewData& view, bool follows);
 };
 
-// Motion blur of the camera only, from depth and the two views between which it moved
+// Motion blur of the camera only, from depth and its previous and current view
 // (post.motion-blur-camera-psf, after M. Potmesil, I. Chakravarty, "Modeling Motion Blur in
 // Computer-Generated Images", 1983): each pixel is the mean along the path of its point.
 //
@@ -65,8 +65,8 @@ struct MotionCamera {
 // Order    where motion blur is
 // Shaders  motion_flow.vert, motion_flow_field.frag, motion_flow.frag, lib/motion.glsl
 //
-// Only pixels of moving objects change, so nothing blurs beyond its silhouette; surfaces seen
-// edge-on to their motion do not blur at all. Camera motion is not included.
+// Only pixels of moving objects change, so nothing blurs beyond its silhouette; surfaces
+// parallel to their motion do not blur at all. Camera motion is not included.
 
 struct MotionFlow {
     ProgramVariants field;

@@ -20,7 +20,7 @@ TextureId blur_axis(
         [kernel, axis](PassContext&, const gpu::Program& program) {
             program.set("axis", axis);
             program.set("negative_weights", Vec3(kernel[0], kernel[1], kernel[2]));
-            program.set("middle", kernel[3]);
+            program.set("center_weight", kernel[3]);
             program.set("positive_weights", Vec3(kernel[4], kernel[5], kernel[6]));
         });
     return target;

@@ -23,8 +23,8 @@ namespace limn {
 // this effect, resets the history.
 //
 // After B. Karis, "High Quality Temporal Supersampling", 2014; M. Salvi, "An Excursion in Temporal
-// Supersampling", 2016; J. Jimenez, "Filmic SMAA", 2016. Blended surfaces have the velocity of what
-// is behind them; reflections are not reprojected.
+// Supersampling", 2016; J. Jimenez, "Filmic SMAA", 2016. Blended surfaces have the velocity of
+// the surface behind them; reflections are not reprojected.
 
 /// Frames until the jitter repeats.
 inline constexpr int kTemporalSamples = 16;

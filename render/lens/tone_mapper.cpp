@@ -27,7 +27,7 @@ TextureId add_tone_map(
     if (local) {
         reads.insert(
             reads.end(), {sampled(local->fine, layout::kLocalFineUnit),
-                          sampled(local->middle, layout::kLocalMediumUnit),
+                          sampled(local->medium, layout::kLocalMediumUnit),
                           sampled(local->coarse, layout::kLocalCoarseUnit)});
     }
     const std::array writes = {discarded(display)};

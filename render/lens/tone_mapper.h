@@ -11,10 +11,10 @@
 namespace limn {
 
 // The whole tone-mapping chain, from scene radiance to display values (hdr.pipeline): statistics,
-// defog, exposure, tone curve, encoding, dither. The renderer ends with it; `limn view` is little
-// else.
+// defog, exposure, tone curve, encoding, dither. The renderer ends with it; `limn view` does
+// little else.
 //
-// Reads    radiance; of the passes that an Exposure asks for, ImageStatistics for defog and
+// Reads    radiance; of the passes that an Exposure requests, ImageStatistics for defog and
 //          metering, LocalLuminance for ToneCurve::Local
 // Writes   display: RGBA8, encoded, opaque
 // Order    last

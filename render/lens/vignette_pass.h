@@ -9,12 +9,12 @@ namespace limn {
 //
 // Reads    radiance; Vignette
 // Writes   radiance, a new texture
-// Order    last in the lens: what scatters in it (glow, glare) has passed the same pupil
+// Order    last in the lens: light that scatters in it (glow, glare) has passed the same pupil
 // Shaders  vignette.frag
 //
-// Natural: a thin lens illuminates the film by cos^4 of the angle to its axis. Mechanical: seen
-// from off the axis, the rim of the lens covers part of the pupil; what is left is the overlap of
-// two equal circles, (2/pi) (acos d - d sqrt(1 - d^2)), with their distance d in diameters growing
+// Natural: a thin lens illuminates the film by cos^4 of the angle to its axis. Mechanical: from
+// off the axis, the rim of the lens covers part of the pupil; the open part is the overlap of two
+// equal circles, (2/pi) (acos d - d sqrt(1 - d^2)), with their distance d in diameters growing
 // from the center of the image to its corners. The center keeps its light.
 
 /// Fraction of the light that passes at `ndc` (-1 .. 1 along x and y), where the half field of view

@@ -111,7 +111,7 @@ bool CausticsEffect::prepare(const FrameData& frame, ViewData& view) {
         return false;
     }
     auto& list = view.data.publish<CausticList>();
-    place_caustics(view.data.get<LightList>(), view.data.get<ShadowList>(), list);
+    finish_caustics(view.data.get<LightList>(), view.data.get<ShadowList>(), list);
     list.record_texture.upload(*frame.ring, list.texels);
     view.lighting.variant.add("WATERS");
     view.lighting.variant.add_if(may_mirror(view), "MIRRORS");

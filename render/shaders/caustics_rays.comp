@@ -1,5 +1,5 @@
-// Traces light from the points of a grid on the water: refracted by the surface and down to what lies below, or
-// reflected and up to what stands above (lib/caustic_landing.glsl). One invocation per ray. Definitions: OCEAN, and
+// Traces light from the points of a grid on the water: refracted by the surface and down to the ground, or
+// reflected and up to the surfaces above (lib/caustic_landing.glsl). One invocation per ray. Definitions: OCEAN, and
 // those of lib/shadow.glsl.
 // Techniques: caustic.projected-vertices, caustic.refraction-pool
 #version 450
@@ -31,9 +31,9 @@ float ground_at(CausticRecord record, vec2 uv) {
     vec4 rect = texelFetch(shadow_views, int(record.world.w) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
     vec2 corner = floor(texel - 0.5);
-    vec2 part = texel - 0.5 - corner;
+    vec2 fraction = texel - 0.5 - corner;
     vec4 depths = 1.0 - textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
-    return mix(mix(depths.w, depths.z, part.x), mix(depths.x, depths.y, part.x), part.y);
+    return mix(mix(depths.w, depths.z, fraction.x), mix(depths.x, depths.y, fraction.x), fraction.y);
 }
 #endif
 
@@ -61,20 +61,20 @@ void main() {
     vec3 normal = normalize(area);
     vec3 to_sun = record.to_sun.xyz;
     float facing = dot(normal, to_sun);
-    float share = fresnel(facing, water.shape.w);
-    float light = max(dot(area, to_sun), 0.0) * (mirrored ? share : 1.0 - share) / record.bent.w;
+    float reflectance = fresnel(facing, water.shape.w);
+    float light = max(dot(area, to_sun), 0.0) * (mirrored ? reflectance : 1.0 - reflectance) / record.bent.w;
 
     vec3 ray = mirrored ? reflect_ray(normal, to_sun) : -refract_ray(normal, to_sun, 1.0 / water.shape.w);
     vec2 slant = ray.xz / max(ray.y, kMinSlope) * (mirrored ? 1.0 : -1.0);
 
-    // Below the water, rays at the edge of the map are undisturbed; above it, there is no light from beside the water,
-    // and none that waves reflect downward.
+    // Below the water, rays at the edge of the map are undisturbed; above it, there is no light from outside the
+    // water, and none that waves reflect downward.
     vec2 edge = min(q - record.window.xy, record.window.xy + record.window.zw - q);
     float within = clamp(min(edge.x, edge.y) / record.grid.z, 0.0, 1.0);
-    float free = mirrored ? record.place.w : within;
+    float free = mirrored ? record.target.w : within;
     if (mirrored) {
-        bool beside = any(greaterThan(mix(vec2(-1.0), abs(q) - water.shape.yz, walled), vec2(0.0)));
-        light *= beside || ray.y < kMinSlope ? 0.0 : all(walled) ? 1.0 : within;
+        bool outside = any(greaterThan(mix(vec2(-1.0), abs(q) - water.shape.yz, walled), vec2(0.0)));
+        light *= outside || ray.y < kMinSlope ? 0.0 : all(walled) ? 1.0 : within;
     }
     vec2 bent = record.bent.xy;
     vec2 entry = q + free * (offset.xz + (mirrored ? -slant : slant) * offset.y);
@@ -84,8 +84,8 @@ void main() {
     light *= light_visibility(record.shadows, entry_ws, vec3(0.0, 1.0, 0.0), record.world.xyz, vec2(at));
     if (record.world.w >= 0.0 && record.grid.w != kCausticsPool) {
         for (int i = 0; i < kSteps; ++i) {
-            vec2 place = undisturbed_entry(entry, free * (slant - bent), path);
-            path = record.bent.z * ground_at(record, (place - record.window.xy) / record.window.zw);
+            vec2 landing = undisturbed_entry(entry, free * (slant - bent), path);
+            path = record.bent.z * ground_at(record, (landing - record.window.xy) / record.window.zw);
         }
     }
 #endif
@@ -96,7 +96,7 @@ void main() {
         entry = q - inner + hit.xz - slant * path;
         light = light > 0.0 ? pool_light(offset.y, record.pool.z, record.pool.w) : 0.0;
     }
-    vec2 place = undisturbed_entry(entry, free * (slant - bent), path);
-    rays[int(record.place.z) + ray_of_map.y] =
-        vec4((place - record.window.xy) / record.window.zw * record.grid.y, light, offset.y);
+    vec2 landing = undisturbed_entry(entry, free * (slant - bent), path);
+    rays[int(record.target.z) + ray_of_map.y] =
+        vec4((landing - record.window.xy) / record.window.zw * record.grid.y, light, offset.y);
 }

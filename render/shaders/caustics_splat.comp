@@ -42,7 +42,7 @@ void main() {
         return;
     }
     int side = int(record.grid.y);
-    int corner = int(record.place.z) + ray_of_map.y;
+    int corner = int(record.target.z) + ray_of_map.y;
     vec4 a = rays[corner];
     vec4 b = rays[corner + 1];
     vec4 c = rays[corner + cells + 1];
@@ -59,7 +59,7 @@ void main() {
         area = 0.5 * abs(across.x * along.y - across.y * along.x);
     }
     float whole = kFixedPointOne * area / float(rows * columns);
-    ivec2 first = ivec2(record.place.xy);
+    ivec2 first = ivec2(record.target.xy);
     for (int j = 0; j < rows; ++j) {
         float v = (float(j) + 0.5) / float(rows);
         vec3 left = mix(a.xyz, c.xyz, v);
@@ -68,12 +68,12 @@ void main() {
             vec3 ray = mix(left, right, (float(i) + 0.5) / float(columns));
             vec2 at = clamp(ray.xy, vec2(-8.0), vec2(float(side) + 8.0)) - 0.5;
             ivec2 texel = ivec2(floor(at));
-            vec2 share = at - vec2(texel);
+            vec2 weight = at - vec2(texel);
             float amount = whole * ray.z;
-            add(first, texel, side, amount * (1.0 - share.x) * (1.0 - share.y));
-            add(first, texel + ivec2(1, 0), side, amount * share.x * (1.0 - share.y));
-            add(first, texel + ivec2(0, 1), side, amount * (1.0 - share.x) * share.y);
-            add(first, texel + ivec2(1, 1), side, amount * share.x * share.y);
+            add(first, texel, side, amount * (1.0 - weight.x) * (1.0 - weight.y));
+            add(first, texel + ivec2(1, 0), side, amount * weight.x * (1.0 - weight.y));
+            add(first, texel + ivec2(0, 1), side, amount * (1.0 - weight.x) * weight.y);
+            add(first, texel + ivec2(1, 1), side, amount * weight.x * weight.y);
         }
     }
 }

@@ -1,4 +1,4 @@
-// Mixes the image with the color of each point that dazzles, as far as it is in sight (dazzle_pass.h).
+// Mixes the image with the color of each dazzling point, weighted by its visibility (dazzle_pass.h).
 // Techniques: engine.obfuscating-point
 #version 450
 #include "dazzle_gpu.h"

@@ -1,4 +1,4 @@
-// Luminance at quarter resolution, with its weight: highlights are detected against it.
+// Luminance at quarter resolution, with its weight: the reference for detecting highlights.
 #version 450
 #include "lib/depth_of_field.glsl"
 #include "depth_of_field_gpu.h"

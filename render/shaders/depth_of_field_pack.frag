@@ -6,11 +6,11 @@
 layout(binding = kFocusRadianceUnit) uniform sampler2D scene_radiance;
 layout(binding = kFocusDepthUnit) uniform sampler2D scene_depth;
 
-layout(location = 0) out vec4 seen;
+layout(location = 0) out vec4 pixel;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     vec4 light = finite_light(texelFetch(scene_radiance, here, 0));
     float radius = 0.5 * circle(texelFetch(scene_depth, here, 0).r);
-    seen = vec4(light.rgb, light.a > 0.0 ? radius : kUnknown);
+    pixel = vec4(light.rgb, light.a > 0.0 ? radius : kUnknown);
 }

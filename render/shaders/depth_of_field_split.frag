@@ -1,5 +1,5 @@
-// Downsamples to half resolution and sorts pixels into layers: far, near, and all but the latter; the first two split
-// into fine and wide circles. Alpha: share of the texel.
+// Downsamples to half resolution and sorts pixels into layers: far, near, and everything behind near; the first two are
+// split into fine and wide circles. Alpha: weight in the texel.
 #version 450
 #include "lib/depth_of_field.glsl"
 #include "depth_of_field_gpu.h"
@@ -15,7 +15,7 @@ layout(location = 5) out vec4 near_wide;     // coarse
 layout(location = 6) out vec2 wide_radii;    // [px] of both, times radius_weight
 layout(location = 7) out vec4 behind_near;
 
-// With a tent over 4 x 4 pixels, which preserves the position and width of a light anywhere in the texel.
+// The filter is a tent over 4 x 4 pixels, which preserves the position and width of a light anywhere in the texel.
 
 void main() {
     ivec2 first = 2 * ivec2(gl_FragCoord.xy) - 1;
@@ -28,22 +28,22 @@ void main() {
     wide_radii = vec2(0.0);
     vec3 radii = vec3(0.0);
     for (int i = 0; i < 16; ++i) {
-        ivec2 place = ivec2(i & 3, i >> 2);
-        vec4 seen = texelFetch(packed_pixels, clamp(first + place, ivec2(0), last), 0);
-        vec2 tent = mix(vec2(0.375), vec2(0.125), notEqual(place - 1 & 2, ivec2(0)));
-        float part = seen.a == kUnknown ? 0.0 : tent.x * tent.y;
-        vec4 light = part * vec4(seen.rgb, 1.0);
-        vec2 layers = vec2(far_share(2.0 * seen.a), near_share(2.0 * seen.a));
-        vec2 wide = layers * coarse_share(abs(seen.a));
+        ivec2 offset = ivec2(i & 3, i >> 2);
+        vec4 pixel = texelFetch(packed_pixels, clamp(first + offset, ivec2(0), last), 0);
+        vec2 tent = mix(vec2(0.375), vec2(0.125), notEqual(offset - 1 & 2, ivec2(0)));
+        float weight = pixel.a == kUnknown ? 0.0 : tent.x * tent.y;
+        vec4 light = weight * vec4(pixel.rgb, 1.0);
+        vec2 layers = vec2(far_weight(2.0 * pixel.a), near_weight(2.0 * pixel.a));
+        vec2 wide = layers * coarse_weight(abs(pixel.a));
         vec2 fine = layers - wide;
         far_light += fine.x * light;
         near_light += fine.y * light;
         far_wide += wide.x * light;
         near_wide += wide.y * light;
         behind_near += layers.y > 0.0 ? vec4(0.0) : light;
-        float shines = radius_weight(light);
-        radii += abs(seen.a) * vec3(fine.x * shines, fine.x * part, fine.y * shines);
-        wide_radii += abs(seen.a) * shines * wide;
+        float brightness = radius_weight(light);
+        radii += abs(pixel.a) * vec3(fine.x * brightness, fine.x * weight, fine.y * brightness);
+        wide_radii += abs(pixel.a) * brightness * wide;
     }
     far_kernels.xy = kernel_of(radii.x / max(radius_weight(far_light), 1e-20));
     far_kernels.zw = kernel_of(radii.y / max(far_light.a, 1e-20));

@@ -1,4 +1,4 @@
-// Widest radius [px] of the small near circles that reach a block.
+// Dilates blocks: widest radius [px] of the small near circles that overlap a block.
 #version 450
 #include "lib/depth_of_field.glsl"
 #include "depth_of_field_gpu.h"
@@ -11,7 +11,7 @@ void main() {
     ivec2 last = textureSize(small_of_blocks, 0) - 1;
     widest = 0.0;
     for (int i = 0; i < 9; ++i) {
-        ivec2 there = ivec2(gl_FragCoord.xy) + ivec2(i % 3, i / 3) - 1;
-        widest = max(widest, texelFetch(small_of_blocks, clamp(there, ivec2(0), last), 0).x);
+        ivec2 neighbor = ivec2(gl_FragCoord.xy) + ivec2(i % 3, i / 3) - 1;
+        widest = max(widest, texelFetch(small_of_blocks, clamp(neighbor, ivec2(0), last), 0).x);
     }
 }

@@ -1,5 +1,5 @@
-// The result of depth_of_field_blocks.frag per tile. Includes small near circles that reach into the tile and, as a small value,
-// far circles next to it: they may be visible past the rim of something in it.
+// Tile max: reduces the result of depth_of_field_blocks.frag to tiles. Includes small near circles that overlap the
+// tile and, as a small value, far circles next to it: they may be visible past the edge of a surface in it.
 #version 450
 #include "lib/depth_of_field.glsl"
 #include "depth_of_field_gpu.h"
@@ -18,12 +18,12 @@ void main() {
     tile = vec4(0.0);
     small = vec2(0.0);
     for (int i = 0; i < (kSide + 2) * (kSide + 2); ++i) {
-        ivec2 place = ivec2(i % (kSide + 2), i / (kSide + 2)) - 1;
-        ivec2 there = clamp(first + place, ivec2(0), last);
-        bool inside = all(greaterThanEqual(place, ivec2(0))) && all(lessThan(place, ivec2(kSide)));
-        vec2 radii = texelFetch(small_of_blocks, there, 0).xy;
+        ivec2 offset = ivec2(i % (kSide + 2), i / (kSide + 2)) - 1;
+        ivec2 block_at = clamp(first + offset, ivec2(0), last);
+        bool inside = all(greaterThanEqual(offset, ivec2(0))) && all(lessThan(offset, ivec2(kSide)));
+        vec2 radii = texelFetch(small_of_blocks, block_at, 0).xy;
         small = max(small, inside ? radii : vec2(radii.x, 0.0));
-        vec4 block = texelFetch(blocks, there, 0);
+        vec4 block = texelFetch(blocks, block_at, 0);
         tile = max(tile, inside ? block : vec4(0.0, 0.0, min(block.z, 0.25), 0.0));
     }
 }

@@ -12,7 +12,7 @@ const uint kReflectionLayers = 1u + kMaxProbes;  // of reflection maps: the sky,
 
 // A soft box at infinity: the unit square of (dot(d, u), dot(d, v)) / dot(d, center).
 struct StudioLamp {
-    vec4 center;  // unit, toward it. w: width of its soft edge, as a share of the half side
+    vec4 center;  // unit, toward it. w: width of its soft edge, as a fraction of the half side
     vec4 u;       // world direction across / tangent of the half width
     vec4 v;       // world direction up / tangent of the half height
     vec4 color;   // radiance
@@ -35,8 +35,8 @@ struct Irradiance {
 
 // A light probe: its region of influence and its captured environment.
 struct ProbeRecord {
-    vec4 probe_from_world[3];  // rows; full weight within the unit ball or, for a room, the unit cube
-    vec4 seen_from;            // capture position, world. w: layer of the reflection maps
+    vec4 probe_from_world[3];  // rows; full weight inside the unit ball or, for a room, the unit cube
+    vec4 capture_position;     // world. w: layer of the reflection maps
     vec4 shape;                // x: 1 = a room with parallax, 0 = a ball without. y: 1 / width of the fade beyond
 };
 

@@ -1,4 +1,4 @@
-// Fog in front of all that has a depth, and of the sky. Premultiplied.
+// Fog in front of surfaces and the sky, premultiplied.
 #version 450
 #include "lib/view.glsl"
 #include "lib/height_fog.glsl"

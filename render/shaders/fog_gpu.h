@@ -1,4 +1,4 @@
-// Height fog as a camera meets it (render/environment/fog_block.h). Shared by C++ and GLSL; std140.
+// Height fog relative to the camera (render/environment/fog_block.h). Shared by C++ and GLSL; std140.
 
 #ifdef __cplusplus
 #pragma once
@@ -12,8 +12,8 @@ namespace limn::layout {
 
 struct FogBlock {
     vec4 density;  // extinction at the camera [1/m], 0: no fog; 1 / its scale height [1/m]; forward scattering
-    vec4 ambient;  // radiance that it scatters from all around
-    vec4 sun;      // irradiance of the sun that it scatters
+    vec4 ambient;  // radiance scattered from the environment
+    vec4 sun;      // irradiance of the sun
     vec4 to_sun;   // world, unit
 };
 

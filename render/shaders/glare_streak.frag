@@ -1,4 +1,4 @@
-// Spreads the sum so far, and a share of the source, along a line with [1 2 1] / 4 at a distance. Black outside.
+// Spreads the sum so far, and the weighted source, along a line with [1 2 1] / 4 at a distance. Black outside.
 #version 450
 #include "fullscreen_gpu.h"
 #include "glare_gpu.h"
@@ -7,14 +7,14 @@ layout(binding = kSourceUnit) uniform sampler2D source;
 layout(binding = kGlareSumUnit) uniform sampler2D sum;
 
 uniform vec2 offset;   // [texels]
-uniform float share;   // weight of the source
-uniform float sum_weight;  // weight of the sum
+uniform float source_weight;
+uniform float sum_weight;
 
 layout(location = 0) out vec4 streak;
 
-vec3 light_at(vec2 place) {
-    vec2 uv = place / vec2(textureSize(source, 0));
-    return sum_weight * texture(sum, uv).rgb + share * texture(source, uv).rgb;
+vec3 light_at(vec2 position) {
+    vec2 uv = position / vec2(textureSize(source, 0));
+    return sum_weight * texture(sum, uv).rgb + source_weight * texture(source, uv).rgb;
 }
 
 void main() {

@@ -1,4 +1,4 @@
-// Downsamples the image to half resolution with a firefly clamp. Alpha is the share of its light that a texel keeps.
+// Downsamples the image to half resolution with a firefly clamp. Alpha: fraction of its light that a texel passes on.
 // Definition ANY_SIZE: the sizes are not exactly 2 : 1.
 #version 450
 #include "lib/pyramid.glsl"
@@ -26,21 +26,21 @@ Quarters read_quarters() {
 #ifdef ANY_SIZE
     ivec2 last = textureSize(scene_radiance, 0) - 1;
     vec2 ratio = vec2(last + 1) / vec2(size);
-    vec2 middle = gl_FragCoord.xy * ratio;
-    ivec2 begin = ivec2(floor(middle - ratio));
+    vec2 center = gl_FragCoord.xy * ratio;
+    ivec2 begin = ivec2(floor(center - ratio));
     q = Quarters(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     for (int y = 0; y < 5; ++y) {
         vec2 rows = vec2(begin.y + y, begin.y + y + 1);
-        vec2 below = min(rows, middle.y);
-        vec2 above = max(rows, middle.y);
-        float down = 2.0 * tent_share(below.x, below.y, middle.y, ratio.y);
-        float up = 2.0 * tent_share(above.x, above.y, middle.y, ratio.y);
+        vec2 below = min(rows, center.y);
+        vec2 above = max(rows, center.y);
+        float down = 2.0 * tent_fraction(below.x, below.y, center.y, ratio.y);
+        float up = 2.0 * tent_fraction(above.x, above.y, center.y, ratio.y);
         for (int x = 0; x < 5; ++x) {
             vec2 columns = vec2(begin.x + x, begin.x + x + 1);
-            vec2 before = min(columns, middle.x);
-            vec2 behind = max(columns, middle.x);
-            float left = 2.0 * tent_share(before.x, before.y, middle.x, ratio.x);
-            float right = 2.0 * tent_share(behind.x, behind.y, middle.x, ratio.x);
+            vec2 before = min(columns, center.x);
+            vec2 behind = max(columns, center.x);
+            float left = 2.0 * tent_fraction(before.x, before.y, center.x, ratio.x);
+            float right = 2.0 * tent_fraction(behind.x, behind.y, center.x, ratio.x);
             // At most one pixel beyond the border, where clamping equals mirroring.
             vec3 light = texelFetch(scene_radiance, clamp(begin + ivec2(x, y), ivec2(0), last), 0).rgb;
             q.left_down += left * down * light;
@@ -73,11 +73,11 @@ void main() {
     vec4 weight = 1.0 / (1.0 + light * inverse_firefly);
     float plain = dot(light, vec4(0.25));
     float weighted = dot(weight, light) / dot(weight, vec4(1.0));
-    float passed = plain > 0.0 ? min(weighted / plain, 1.0) : 1.0;
+    float fraction = plain > 0.0 ? min(weighted / plain, 1.0) : 1.0;
 
     float peak = max(mean.r, max(mean.g, mean.b));
-    passed = min(passed, kMaxHalf / max(peak, 1.0));
+    fraction = min(fraction, kMaxHalf / max(peak, 1.0));
     // Drops texels with NaN or infinity in any pixel.
-    bool known = is_finite(mean) && is_finite(passed);
-    passed_on = known ? vec4(passed * mean, passed) : vec4(0.0);
+    bool known = is_finite(mean) && is_finite(fraction);
+    passed_on = known ? vec4(fraction * mean, fraction) : vec4(0.0);
 }

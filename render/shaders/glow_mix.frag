@@ -1,4 +1,4 @@
-// Replaces a share of each pixel's light by the light that the lens scatters. Definition ANY_SIZE: the sizes are not
+// Replaces a fraction of each pixel's light by light scattered in the lens. Definition ANY_SIZE: the sizes are not
 // exactly 2 : 1.
 #version 450
 #include "lib/pyramid.glsl"
@@ -7,7 +7,7 @@
 #include "glow_gpu.h"
 
 layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
-layout(binding = kGlowUnit) uniform sampler2D glow;  // alpha: share of its light that a texel keeps, see glow_first.frag
+layout(binding = kGlowUnit) uniform sampler2D glow;  // alpha: fraction of light passed on (glow_first.frag)
 
 uniform float strength;
 
@@ -22,10 +22,10 @@ vec4 glow_at_pixel(ivec2 size) {
     ivec2 begin = ivec2(floor(from / ratio - 0.5));
     vec4 mean = vec4(0.0);
     for (int y = 0; y < 3; ++y) {
-        float share_y = tent_share(from.y, from.y + 1.0, (float(begin.y + y) + 0.5) * ratio.y, ratio.y);
+        float weight_y = tent_fraction(from.y, from.y + 1.0, (float(begin.y + y) + 0.5) * ratio.y, ratio.y);
         for (int x = 0; x < 3; ++x) {
-            float share_x = tent_share(from.x, from.x + 1.0, (float(begin.x + x) + 0.5) * ratio.x, ratio.x);
-            mean += share_x * share_y * texelFetch(glow, clamp(begin + ivec2(x, y), ivec2(0), glow_size - 1), 0);
+            float weight_x = tent_fraction(from.x, from.x + 1.0, (float(begin.x + x) + 0.5) * ratio.x, ratio.x);
+            mean += weight_x * weight_y * texelFetch(glow, clamp(begin + ivec2(x, y), ivec2(0), glow_size - 1), 0);
         }
     }
     return ratio.x * ratio.y * mean;

@@ -14,9 +14,9 @@ uniform float gain;
 layout(location = 0) out vec4 stepped;
 
 #ifdef TWICE
-// The shares below, which are the same for all texels; of the larger image.
-const float kDownShares[5] = float[](26.0 / 128.0, 20.0 / 128.0, 12.0 / 128.0, 5.0 / 128.0, 1.0 / 128.0);
-const float kUpShares[3] = float[](5.0 / 16.0, 10.0 / 16.0, 1.0 / 16.0);  // of an even texel
+// The weights below, which are the same for all texels; for texels of the larger image.
+const float kDownWeights[5] = float[](26.0 / 128.0, 20.0 / 128.0, 12.0 / 128.0, 5.0 / 128.0, 1.0 / 128.0);
+const float kUpWeights[3] = float[](5.0 / 16.0, 10.0 / 16.0, 1.0 / 16.0);  // of an even texel
 #endif
 
 vec3 source_at(ivec2 across, int at, int count) {
@@ -38,29 +38,29 @@ void main() {
 #if defined(TWICE) && defined(UP)
     int toward = 1 - 2 * (at & 1);
     for (int i = 0; i < 3; ++i) {
-        sum += kUpShares[i] * source_at(across, (at >> 1) + (i - 1) * toward, count);
+        sum += kUpWeights[i] * source_at(across, (at >> 1) + (i - 1) * toward, count);
     }
 #elif defined(TWICE)
     for (int i = 0; i < 5; ++i) {
-        sum += kDownShares[i]
+        sum += kDownWeights[i]
                * (source_at(across, 2 * at - i, count) + source_at(across, 2 * at + 1 + i, count));
     }
 #elif defined(UP)
     float ratio = float(sizes) / float(count);
     int begin = int(ceil((float(at) - 1.0) / ratio - 1.5));
     for (int i = begin; i < begin + 5; ++i) {
-        float share = ratio * smooth_share(float(at), (float(i) + 0.5) * ratio, ratio);
-        sum += share * source_at(across, i, count);
+        float weight = ratio * smooth_fraction(float(at), (float(i) + 0.5) * ratio, ratio);
+        sum += weight * source_at(across, i, count);
     }
 #else
     float ratio = float(count) / float(sizes);
-    float middle = (float(at) + 0.5) * ratio;
-    int begin = int(floor(middle - 2.0 * ratio)) - 1;
+    float center = (float(at) + 0.5) * ratio;
+    int begin = int(floor(center - 2.0 * ratio)) - 1;
     for (int i = begin; i < begin + 11; ++i) {
-        float share = 0.5 * smooth_share(float(i), middle, ratio)
-                      + 0.25 * smooth_share(float(i), middle - ratio, ratio)
-                      + 0.25 * smooth_share(float(i), middle + ratio, ratio);
-        sum += share * source_at(across, i, count);
+        float weight = 0.5 * smooth_fraction(float(i), center, ratio)
+                      + 0.25 * smooth_fraction(float(i), center - ratio, ratio)
+                      + 0.25 * smooth_fraction(float(i), center + ratio, ratio);
+        sum += weight * source_at(across, i, count);
     }
 #endif
     stepped = vec4(gain * sum, 0.0);

@@ -8,7 +8,7 @@ layout(binding = kVisibilityUnit) uniform sampler2D visibility;  // of each ligh
 
 uniform vec2 tangent;  // of half the field of view
 
-layout(location = 0) out vec2 place;  // tangent of the angle to the view axis
+layout(location = 0) out vec2 point;  // tangent of the angle to the view axis
 layout(location = 1) flat out vec4 radiance_softness;
 layout(location = 2) flat out vec4 rims[4];
 
@@ -23,6 +23,6 @@ void main() {
     for (int i = 0; i < 4; ++i) {
         rims[i] = texelFetch(sprites, first + 2 + i);
     }
-    place = circle.xy + circle.z * kCorners[gl_VertexID % 6];
-    gl_Position = visible > 0.0 ? vec4(place / tangent, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    point = circle.xy + circle.z * kCorners[gl_VertexID % 6];
+    gl_Position = visible > 0.0 ? vec4(point / tangent, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -1,4 +1,4 @@
-// Downsamples the widest blur: each texel is the mean of the four about its center.
+// Downsamples the widest blur: each texel is the mean of the four around its center.
 #version 450
 #include "fullscreen_gpu.h"
 

@@ -17,7 +17,7 @@ uniform vec4 look;   // mirror_vertex()
 layout(location = 0) out float lit;
 layout(location = 1) out float dark;  // > 0 in triangles with an unlit vertex
 
-const float kNearer = 1.0005;  // depth bias toward the camera, against z-fighting with the plane
+const float kNearer = 1.0005;  // depth bias toward the camera, relative to the plane that it lies on
 
 void main() {
     vec4 p = vec4(position_ms, 1.0);

@@ -15,7 +15,7 @@ uniform int samples;  // along the motion
 
 layout(location = 0) out vec4 blurred;
 
-const float kStill = 0.5;       // less than this [px] to either side is no motion
+const float kStill = 0.5;       // less than this to either side counts as no motion [px]
 const float kSameDepth = 0.02;  // relative; within it, the faster one counts as in front
 
 struct Pixel {
@@ -26,8 +26,8 @@ struct Pixel {
 
 // Sums along a line, in pixels of its length unless noted.
 struct Found {
-    vec3 front;         // radiance of what passes in front of this pixel, times share of the exposure
-    float front_share;  // of the exposure
+    vec3 front;         // radiance of surfaces passing in front of this pixel, times fraction of the exposure
+    float front_weight; // fraction of the exposure
     vec3 own;           // the pixel's own layer: surfaces that move with it
     float own_length;
     float gap;          // of the same length, where the layer behind is visible
@@ -39,26 +39,26 @@ vec4 fetch_motion(ivec2 at) {
     return texelFetch(motion_map, at, 0);
 }
 
-// Samples one line through the pixel, `reach` [px] to either side, where it crosses columns or rows of pixels: at most
-// about `max_samples` of them, at a regular stride. as_front: gathers what passes in front; as_own: gathers the
-// pixel's own layer and what is behind it.
+// Samples one line through the pixel, `range` [px] to either side, where it crosses columns or rows of pixels: at most
+// about `max_samples` of them, at a regular stride. as_front: gathers surfaces that pass in front; as_own: gathers the
+// pixel's own layer and the one behind it.
 void gather(
-    inout Found found, Pixel here, vec2 direction, float reach, int max_samples, float jitter, bool as_front,
+    inout Found found, Pixel here, vec2 direction, float range, int max_samples, float jitter, bool as_front,
     bool as_own) {
     ivec2 last = textureSize(radiance, 0) - 1;
     float major = max(abs(direction.x), abs(direction.y));
     vec2 pace = direction / major;
-    int far = int(reach * major + 0.5);
+    int far = int(range * major + 0.5);
     int stride = (2 * far + max_samples) / max_samples;
     float spacing = float(stride) / major;
-    float own_reach = abs(dot(here.motion, direction));
+    float own_range = abs(dot(here.motion, direction));
     for (int k = int(jitter * float(stride)) - far; k <= far; k += stride) {
-        ivec2 there = clamp(ivec2(gl_FragCoord.xy + float(k) * pace), ivec2(0), last);
-        vec4 texel = fetch_motion(there);
-        vec3 color = texelFetch(radiance, there, 0).rgb;
+        ivec2 position = clamp(ivec2(gl_FragCoord.xy + float(k) * pace), ivec2(0), last);
+        vec4 texel = fetch_motion(position);
+        vec3 color = texelFetch(radiance, position, 0).rgb;
         float distance_px = abs(float(k)) / major;
 
-        // Pixels with the same motion are one layer at any depth: their mutual occlusion does not change.
+        // Pixels with the same motion form one layer at any depth: their mutual occlusion does not change.
         float apart = distance(texel.xy, here.motion);
         float alike = clamp(1.5 - apart / (0.5 + 0.2 * max(texel.w, here.speed)), 0.0, 1.0);
         float nearer = (texel.z - here.depth) / (kSameDepth * max(max(texel.z, here.depth), 1e-9));
@@ -68,18 +68,18 @@ void gather(
         if (as_front) {
             float along = abs(dot(texel.xy, direction));
             float straight = clamp(2.0 * along / max(texel.w, 1e-3) - 1.0, 0.0, 1.0);
-            float share = spacing / max(2.0 * along, 1.0) * covers(along, distance_px) * straight;
-            share *= (1.0 - alike) * before;
-            found.front += share * color;
-            found.front_share += share;
+            float exposed = spacing / max(2.0 * along, 1.0) * covers(along, distance_px) * straight;
+            exposed *= (1.0 - alike) * before;
+            found.front += exposed * color;
+            found.front_weight += exposed;
         }
         if (as_own) {
-            float inside = spacing * covers(own_reach, distance_px);
+            float inside = spacing * covers(own_range, distance_px);
             found.own += inside * alike * color;
             found.own_length += inside * alike;
             float back = inside * (1.0 - alike) * (1.0 - before);
             found.gap += back;
-            float weight = back * (1.05 - distance_px / max(own_reach, distance_px));
+            float weight = back * (1.05 - distance_px / max(own_range, distance_px));
             found.behind += weight * color;
             found.behind_weight += weight;
         }
@@ -126,9 +126,9 @@ void main() {
     if (found.behind_weight > 0.0) {
         own = mix(found.behind / found.behind_weight, own, found.own_length / (found.own_length + found.gap));
     }
-    if (found.front_share > 1.0) {
-        found.front /= found.front_share;
-        found.front_share = 1.0;
+    if (found.front_weight > 1.0) {
+        found.front /= found.front_weight;
+        found.front_weight = 1.0;
     }
-    blurred.rgb = found.front + (1.0 - found.front_share) * own;
+    blurred.rgb = found.front + (1.0 - found.front_weight) * own;
 }

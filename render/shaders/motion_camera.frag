@@ -9,7 +9,7 @@
 layout(binding = kSourceUnit) uniform sampler2D radiance;
 layout(binding = kCameraMotionDepthUnit) uniform sampler2D depth_map;
 
-uniform float half_exposure;  // share of the frame time
+uniform float half_exposure;  // fraction of the frame time
 uniform float longest;        // [px]
 uniform int samples;
 

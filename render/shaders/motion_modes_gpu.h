@@ -1,4 +1,4 @@
-// Bindings of the other ways to draw motion blur, beside fullscreen_gpu.h. Shared by C++ and GLSL.
+// Bindings of the other methods of motion blur, beside fullscreen_gpu.h. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once

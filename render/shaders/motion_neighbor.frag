@@ -1,4 +1,4 @@
-// Motion that may reach each tile: the longest motion of the tiles from which it does, and the longest in a different
+// Neighbor max: the longest motion of the tiles from which it may extend into each tile, and the longest in a different
 // direction, for objects that cross.
 //   xy  longest [px]
 //   zw  the other; equal to xy for uniform motion in the neighborhood; 0 if there is none
@@ -14,11 +14,11 @@ uniform int radius;  // of the neighborhood [tiles]
 layout(location = 0) out vec4 neighbor;
 
 const float kDiagonal = 1.4142136;
-const float kAlike = 0.12;   // invisible differences, as a share of the motion; by eye
+const float kAlike = 0.12;   // invisible differences, as a fraction of the motion; by eye
 const float kAlikePx = 0.3;  // [px]
 
 // Whether a tile that lies `offset` [px] away and moves by +-motion touches this one.
-bool reaches(vec2 offset, vec2 motion) {
+bool touches(vec2 offset, vec2 motion) {
     float len = length(motion);
     vec2 direction = motion / max(len, 1e-6);
     float margin = kDiagonal * float(side);
@@ -37,7 +37,7 @@ void main() {
         for (int x = low.x; x <= high.x; ++x) {
             vec2 motion = texelFetch(tiles, ivec2(x, y), 0).xy;
             float squared = dot(motion, motion);
-            if (squared > longest_squared && reaches(vec2(x - here.x, y - here.y) * float(side), motion)) {
+            if (squared > longest_squared && touches(vec2(x - here.x, y - here.y) * float(side), motion)) {
                 longest = motion;
                 longest_squared = squared;
             }
@@ -50,11 +50,11 @@ void main() {
         for (int x = low.x; x <= high.x; ++x) {
             vec3 tile = texelFetch(tiles, ivec2(x, y), 0).xyz;
             vec2 offset = vec2(x - here.x, y - here.y) * float(side);
-            // Slow motions reach this tile only from adjacent tiles, but matter there.
-            if (reaches(offset, longest) || reaches(offset, tile.xy)) {
+            // Slow motions touch this tile only from adjacent tiles, but matter there.
+            if (touches(offset, longest) || touches(offset, tile.xy)) {
                 apart = max(apart, distance(tile.xy, longest) + tile.z);
                 float across = abs(longest.x * tile.y - longest.y * tile.x);
-                if (across > max_across && reaches(offset, tile.xy)) {
+                if (across > max_across && touches(offset, tile.xy)) {
                     max_across = across;
                     other = tile.xy;
                 }

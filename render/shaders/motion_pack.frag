@@ -10,7 +10,7 @@
 layout(binding = kPackVelocityUnit) uniform sampler2D velocity_map;
 layout(binding = kPackDepthUnit) uniform sampler2D depth_map;
 
-uniform float half_exposure;  // share of the frame time
+uniform float half_exposure;  // fraction of the frame time
 uniform float longest;        // [px]
 
 layout(location = 0) out vec4 motion;
@@ -19,6 +19,6 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     float depth = texelFetch(depth_map, at, 0).r;
     vec2 moved = texelFetch(velocity_map, at, 0).xy;
-    vec2 reach = bounded_motion(moved * view.size.xy * half_exposure, longest);
-    motion = vec4(reach, depth, length(reach));
+    vec2 half_motion = bounded_motion(moved * view.size.xy * half_exposure, longest);
+    motion = vec4(half_motion, depth, length(half_motion));
 }

@@ -11,13 +11,13 @@ layout(binding = kPreviousRadianceUnit) uniform sampler2D previous_radiance;  //
 layout(binding = kStretchDepthUnit) uniform sampler2D depth_map;        // of this frame
 
 uniform int samples;     // >= 2
-uniform float exposure;  // share of the motion
+uniform float exposure;  // fraction of the motion
 uniform float longest;   // [px]
 
 noperspective layout(location = 0) in vec2 motion;
 layout(location = 0) out vec4 blurred;
 
-const float kBehind = 1.02;  // ratio of distances from which the layer is hidden
+const float kBehind = 1.02;  // ratio of distances from which the layer is occluded
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -26,7 +26,7 @@ void main() {
     float depth = texelFetch(depth_map, pixel, 0).r;
     blurred = texelFetch(radiance, pixel, 0);
     if (depth > 0.0 && view_distance(depth) * kBehind < layer_distance) {
-        return;  // the layer is hidden
+        return;  // the layer is occluded
     }
     vec2 v = bounded_motion(motion * exposure, longest);
     vec3 sum = vec3(0.0);

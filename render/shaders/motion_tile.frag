@@ -1,4 +1,4 @@
-// The longest motion in each tile, and the spread of the others. Two passes, along x and along y.
+// Tile max: the longest motion in each tile, and the spread of the others. Two passes, along x and along y.
 //   xy  longest motion [px]
 //   z   largest difference of another motion from it [px]
 // Techniques: post.motion-blur-reconstruct

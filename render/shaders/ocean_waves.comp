@@ -22,8 +22,8 @@ uniform vec4 patches;         // sides of the cascades [m]
 uniform float choppiness;
 uniform vec2 time_in_periods;   // t / 2 pi [s/rad]: a float and its rounding error
 
-float signed_number(uint place) {
-    return float(int(place) - (place < SIZE / 2u ? 0 : int(SIZE)));
+float signed_number(uint index) {
+    return float(int(index) - (index < SIZE / 2u ? 0 : int(SIZE)));
 }
 
 /// Sine and cosine of omega t, reduced to one period in double precision.

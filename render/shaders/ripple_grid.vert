@@ -1,4 +1,4 @@
-// post.scene-ripple at the points of a grid over the image, with two triangles per cell.
+// The offset of post.scene-ripple, per vertex of a grid over the image, with two triangles per cell.
 #version 450
 #include "lib/ripple.glsl"
 

@@ -1,4 +1,4 @@
-// Heat haze in a box or ball: the path of a ray through it, and the eddies at the middle of that path.
+// Heat haze in a box or ball: the path of a ray through it, and the eddies at the midpoint of that path.
 // Techniques: post.glare-heat-haze
 #version 450
 #include "lib/noise.glsl"
@@ -11,7 +11,7 @@ uniform mat4 local_from_world;  // half-extent 1
 uniform bool is_ball;
 uniform float max_shift;    // largest shift [px]
 uniform float scale;   // of an eddy [m]
-uniform float raised;  // distance that the air has risen [eddies]
+uniform float raised;  // distance by which the air has risen [eddies]
 uniform uint seed;
 
 layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
@@ -44,16 +44,16 @@ void main() {
     float enter = max(span.x, view.camera_ws.w);
     float hidden = min(span.y, view.camera_ws.w / max(depth, 1e-20));
     float whole = span.y - enter;
-    float share = whole > 0.0 ? max(hidden - enter, 0.0) / whole : 0.0;
+    float fraction = whole > 0.0 ? max(hidden - enter, 0.0) / whole : 0.0;
 
     float t = enter + 0.5 * max(hidden - enter, 0.0);
     vec3 local = from + t * along;
     vec3 inside = max(1.0 - local * local, 0.0);
     float fade = is_ball ? max(1.0 - dot(local, local), 0.0) : inside.x * inside.y * inside.z;
 
-    vec3 place = (view.camera_ws.xyz + t * ray) / scale - vec3(0.0, raised, 0.0);
-    vec2 eddy = vec2(gradient_noise(place, seed), gradient_noise(place, seed + 0x9e37u));
-    vec2 moved = 0.70710678 * max_shift * share * fade * eddy;
+    vec3 point = (view.camera_ws.xyz + t * ray) / scale - vec3(0.0, raised, 0.0);
+    vec2 eddy = vec2(gradient_noise(point, seed), gradient_noise(point, seed + 0x9e37u));
+    vec2 moved = 0.70710678 * max_shift * fraction * fade * eddy;
     if (moved == vec2(0.0)) {
         discard;  // leaves the depth of other effects
     }

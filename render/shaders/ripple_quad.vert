@@ -4,6 +4,6 @@
 uniform vec4 rect;  // NDC: lower left, upper right corner
 
 void main() {
-    vec2 share = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-    gl_Position = vec4(mix(rect.xy, rect.zw, share), 0.0, 1.0);
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    gl_Position = vec4(mix(rect.xy, rect.zw, corner), 0.0, 1.0);
 }

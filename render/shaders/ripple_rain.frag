@@ -13,10 +13,10 @@ uniform float time;
 
 layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
 
-// Shift by a round drop at `from_middle` [radii]: 0 outside, inverts the image inside.
-vec2 refract_drop(vec2 from_middle, float radius) {
-    float inside = 1.0 - min(dot(from_middle, from_middle), 1.0);
-    return -4.0 * strength * radius * from_middle * inside * (2.0 - inside);
+// Shift by a round drop at `from_center` [radii]: 0 outside, inverts the image inside.
+vec2 refract_drop(vec2 from_center, float radius) {
+    float inside = 1.0 - min(dot(from_center, from_center), 1.0);
+    return -4.0 * strength * radius * from_center * inside * (2.0 - inside);
 }
 
 vec4 random_of(ivec2 cell, uint salt) {
@@ -33,8 +33,8 @@ vec2 resting_drops(vec2 at, float cell_size, uint salt) {
     bool wet = now.x < amount;
     float age = fract(life);
     float radius = cell_size * mix(0.1, 0.32, now.y) * smoothstep(0.0, 0.02, age) * (1.0 - age * age);
-    vec2 middle = (vec2(cell) + 0.34 + 0.32 * now.zw) * cell_size;
-    return wet ? refract_drop((at - middle) / max(radius, 1e-6), radius) : vec2(0.0);
+    vec2 center = (vec2(cell) + 0.34 + 0.32 * now.zw) * cell_size;
+    return wet ? refract_drop((at - center) / max(radius, 1e-6), radius) : vec2(0.0);
 }
 
 // A column down which drops run one after another at varying speed, with beads in their wake.
@@ -49,16 +49,16 @@ vec2 running_drop(vec2 at, float width, uint salt) {
     vec4 now = random_of(ivec2(column, int(run)), salt + 1u);
     bool wet = now.x < amount;
     float radius = width * mix(0.16, 0.24, now.y);
-    float middle = (float(column) + mix(0.35, 0.65, now.z)) * width;
+    float center = (float(column) + mix(0.35, 0.65, now.z)) * width;
     float wobble = 0.08 * width * sin(23.0 * at.y + 6.0 * now.w);
-    vec2 from_head = vec2(at.x - middle - wobble, (at.y - head) * (at.y > head ? 0.55 : 1.0));
+    vec2 from_head = vec2(at.x - center - wobble, (at.y - head) * (at.y > head ? 0.55 : 1.0));
     vec2 moved = refract_drop(from_head / radius, radius);
 
     float row_height = 0.35 * width;
     float row = (floor(at.y / row_height) + 0.5) * row_height;
     float behind = row - head - 1.5 * radius;
     float left = 0.5 * radius * (1.0 - smoothstep(0.0, 0.45, behind)) * step(0.0, behind);
-    vec2 from_bead = vec2(at.x - middle - wobble, at.y - row);
+    vec2 from_bead = vec2(at.x - center - wobble, at.y - row);
     moved += left > 0.0 ? refract_drop(from_bead / left, left) : vec2(0.0);
     return wet ? moved : vec2(0.0);
 }

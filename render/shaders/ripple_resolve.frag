@@ -18,15 +18,15 @@ void main() {
     bool moved = field.xy != vec2(0.0);
     vec4 stays = texelFetch(scene_radiance, pixel, 0);
 
-    vec2 place = vec2(pixel) + field.xy;
-    vec2 corner = floor(place);
-    vec2 share = place - corner;
+    vec2 position = vec2(pixel) + field.xy;
+    vec2 corner = floor(position);
+    vec2 fraction = position - corner;
     vec4 sum = vec4(0.0);
     // On a software OpenGL, a loop that no pixel of a group enters is free; a branch is not.
     for (int i = 0; i < (moved ? 4 : 0); ++i) {
         ivec2 step = ivec2(i & 1, i >> 1);
         ivec2 at = clamp(ivec2(corner) + step, ivec2(0), last);
-        vec2 weights = mix(1.0 - share, share, vec2(step));
+        vec2 weights = mix(1.0 - fraction, fraction, vec2(step));
         float weight = weights.x * weights.y;
         bool counts = weight > 0.0 && texelFetch(scene_depth, at, 0).r < field.w;
         sum += counts ? weight * vec4(texelFetch(scene_radiance, at, 0).rgb, 1.0) : vec4(0.0);

@@ -1,4 +1,4 @@
-// A spherical shell that bends the rays which graze it.
+// A spherical shell that bends grazing rays.
 #version 450
 #include "lib/view.glsl"
 #include "gbuffer_gpu.h"
@@ -27,8 +27,8 @@ void main() {
     vec3 ray = view_ray(gl_FragCoord.xy);
     vec3 along = normalize(ray);
     vec3 to_center = center - view.camera_ws.xyz;
-    float reach = dot(to_center, along);
-    vec3 out_of = reach * along - to_center;  // from the center to the ray's nearest point
+    float path = dot(to_center, along);
+    vec3 out_of = path * along - to_center;  // from the center to the ray's nearest point
     float near = length(out_of);
 
     float s = (near - radius) / wavelength;
@@ -39,7 +39,7 @@ void main() {
     float shell_depth = view.camera_ws.w / distance;
     float behind = clamp(1.0 - depth / shell_depth, 0.0, 1.0);
 
-    float turn = reach > 0.0 && near > 0.0 ? amplitude * wave * behind * length(ray) / near : 0.0;
+    float turn = path > 0.0 && near > 0.0 ? amplitude * wave * behind * length(ray) / near : 0.0;
     if (turn == 0.0) {
         discard;  // leaves the depth of other effects
     }

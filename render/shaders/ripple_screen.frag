@@ -1,4 +1,4 @@
-// post.scene-ripple at every pixel.
+// The offset of post.scene-ripple, per pixel.
 #version 450
 #include "lib/ripple.glsl"
 #include "lib/view.glsl"

@@ -6,7 +6,7 @@ layout(binding = kSourceUnit) uniform sampler2D source;
 
 uniform ivec2 axis;  // (1, 0) or (0, 1)
 uniform vec3 negative_weights;  // weights of the pixels -3, -2, -1
-uniform float middle;
+uniform float center_weight;
 uniform vec3 positive_weights;  // 1, 2, 3
 
 layout(location = 0) out vec4 blurred;
@@ -17,6 +17,7 @@ vec4 fetch(int offset) {
 }
 
 void main() {
-    blurred = negative_weights.x * fetch(-3) + negative_weights.y * fetch(-2) + negative_weights.z * fetch(-1) + middle * fetch(0)
+    blurred = negative_weights.x * fetch(-3) + negative_weights.y * fetch(-2) + negative_weights.z * fetch(-1)
+              + center_weight * fetch(0)
               + positive_weights.x * fetch(1) + positive_weights.y * fetch(2) + positive_weights.z * fetch(3);
 }

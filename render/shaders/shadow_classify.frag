@@ -31,7 +31,7 @@ void main() {
     vec3 away = away_from_light(position_ws, volume.light);
     vec3 to_light = normalize(-away);
     if (dot(normal, to_light) <= 0.0 || dot(away, away) * volume.light.w > volume.extrusion.w * volume.extrusion.w) {
-        mask = 0.0;  // the light does not reach it
+        mask = 0.0;  // unlit
         return;
     }
     float lit = light_visibility(map, position_ws, normal, to_light, gl_FragCoord.xy);

@@ -1,4 +1,4 @@
-// Keeps the pixels that shadow_classify.frag left undecided, for the stencil.
+// Keeps the pixels that shadow_classify.frag left undecided, to mark them in the stencil.
 #version 450
 #include "shadow_gpu.h"
 

@@ -1,4 +1,4 @@
-// Writes no color: the stencil counts.
+// Writes no color: only the stencil operations matter.
 #version 450
 
 void main() {}

@@ -1,4 +1,4 @@
-// A shadow volume: every corner of a caster's triangles stays in place or is extruded away from the light
+// A shadow volume: every corner of a caster's triangles stays where it is or is extruded away from the light
 // (shadow.vol-extrude).
 //   PRISMS  one volume per triangle: the corner holds its cap; else it depends on whether its triangle faces the light
 //           (shadow.vol-per-edge)

@@ -1,4 +1,4 @@
-// Blends the current frame into the history. See temporal_pass.h.
+// Blends the current frame into the reprojected history. See temporal_pass.h.
 // Techniques: post.temporal
 #version 450
 #include "lib/numbers.glsl"
@@ -49,18 +49,18 @@ vec3 read_history(vec2 at) {
     vec2 w3 = f * f * (-0.5 + 0.5 * f);
     vec2 w12 = w1 + w2;
     vec2 near = (center - 1.0) / size;
-    vec2 middle = (center + w2 / w12) / size;
+    vec2 center_tap = (center + w2 / w12) / size;
     vec2 far = (center + 2.0) / size;
     float up = w12.x * w0.y;
     float left = w0.x * w12.y;
     float inner = w12.x * w12.y;
     float right = w3.x * w12.y;
     float down = w12.x * w3.y;
-    vec3 sum = up * textureLod(history, vec2(middle.x, near.y), 0.0).rgb
-               + left * textureLod(history, vec2(near.x, middle.y), 0.0).rgb
-               + right * textureLod(history, vec2(far.x, middle.y), 0.0).rgb
-               + down * textureLod(history, vec2(middle.x, far.y), 0.0).rgb;
-    sum += inner * textureLod(history, middle, 0.0).rgb;
+    vec3 sum = up * textureLod(history, vec2(center_tap.x, near.y), 0.0).rgb
+               + left * textureLod(history, vec2(near.x, center_tap.y), 0.0).rgb
+               + right * textureLod(history, vec2(far.x, center_tap.y), 0.0).rgb
+               + down * textureLod(history, vec2(center_tap.x, far.y), 0.0).rgb;
+    sum += inner * textureLod(history, center_tap, 0.0).rgb;
     return max(sum / (up + left + inner + right + down), vec3(0.0));
 }
 
@@ -105,8 +105,8 @@ void main() {
     }
 
     bool still = dot(moved, moved) < kStill * kStill;
-    vec3 past = still ? texelFetch(history, pixel, 0).rgb : read_history(from);
-    vec3 kept = to_ycocg(sanitize(past));
+    vec3 reprojected = still ? texelFetch(history, pixel, 0).rgb : read_history(from);
+    vec3 kept = to_ycocg(sanitize(reprojected));
     vec2 moment = texelFetch(moments, clamp(ivec2(from), ivec2(0), last), 0).xy;
     float count = clamp(moment.x, 1.0, still ? kMaxFramesStill : kMaxFramesMoving);
 
@@ -127,11 +127,11 @@ void main() {
     }
 
     // With little history, bright frames are weighted less to prevent flicker; with more, it approaches a mean.
-    float share = 1.0 / (count + 1.0);
-    float calm = 3.0 * share;
-    float weight_now = share / (1.0 + calm * center.x);
-    float weight_past = (1.0 - share) / (1.0 + calm * kept.x);
+    float weight = 1.0 / (count + 1.0);
+    float luminance_scale = 3.0 * weight;
+    float weight_now = weight / (1.0 + luminance_scale * center.x);
+    float weight_past = (1.0 - weight) / (1.0 + luminance_scale * kept.x);
     vec3 mixed = (weight_now * center + weight_past * kept) / (weight_now + weight_past);
     resolved = vec4(max(from_ycocg(mixed), vec3(0.0)), 1.0);
-    resolved_moments = vec2(count + 1.0, mix(variance, deviation * deviation, still ? min(share, 0.1) : 0.0));
+    resolved_moments = vec2(count + 1.0, mix(variance, deviation * deviation, still ? min(weight, 0.1) : 0.0));
 }

@@ -7,16 +7,16 @@
 namespace limn::layout {
 #endif
 
-/// Of the pixels of one invocation.
+/// Partial statistics: the pixels of one invocation.
 struct StatisticsPart {
     vec4 sum;       // of color; w: of log2(luminance + kLogDelta)
     float least;    // minimum luminance above 0; kNoLuminance if there is none
     float largest;  // maximum luminance
     uint finite;    // number of pixels counted
-    uint broken;    // number of pixels with NaN or infinity, which the rest ignores
+    uint broken;    // number of pixels with NaN or infinity, which are otherwise ignored
 };
 
-/// Of the whole image, and the exposure that follows from it.
+/// Statistics of the whole image, and the exposure derived from them.
 struct ImageStatistics {
     vec4 mean_scale;  // mean color; w: exposure factor besides 2^ev
     vec4 luminance;   // log-average; adapted log-average; minimum above 0; maximum

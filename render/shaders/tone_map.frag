@@ -12,7 +12,7 @@ layout(std140, binding = kToneMeasureBinding) uniform Measure {
 };
 
 uniform float exposure;      // 2^ev
-uniform float defog;         // share of the mean color
+uniform float defog;         // fraction of the mean color to subtract
 uniform float inverse_white;     // Reinhard: 1 / luminance shown as 1
 uniform float contrast;      // Knee
 uniform float gamma;         // Knee, or instead of sRGB; 0 = sRGB
@@ -25,7 +25,7 @@ layout(location = 0) out vec4 display;
 
 #if TONE_CURVE == 4
 layout(binding = kLocalFineUnit) uniform sampler2D local_fine;    // luminance blurred with scales 0 .. 3
-layout(binding = kLocalMediumUnit) uniform sampler2D local_middle;  // 4 .. 7
+layout(binding = kLocalMediumUnit) uniform sampler2D local_medium;  // 4 .. 7
 layout(binding = kLocalCoarseUnit) uniform sampler2D local_coarse;  // 8, 9
 
 uniform float key;
@@ -40,10 +40,10 @@ const float kEven = 0.05;        // maximum activity of an even region; more mak
 float even_surround(vec2 pixel, float scale) {
     vec2 uv = pixel / vec2(textureSize(scene_radiance, 0));
     vec4 fine = texelFetch(local_fine, ivec2(pixel), 0);
-    vec4 middle = texture(local_middle, uv);
+    vec4 medium = texture(local_medium, uv);
     vec2 coarse = texture(local_coarse, uv).rg;
     float v[10] = float[](
-        fine.x, fine.y, fine.z, fine.w, middle.x, middle.y, middle.z, middle.w, coarse.x, coarse.y);
+        fine.x, fine.y, fine.z, fine.w, medium.x, medium.y, medium.z, medium.w, coarse.x, coarse.y);
     float surround = v[0];
     float floor_of_activity = kSharpness * key / scale;  // divided by the square of the scale
     for (int i = 0; i < kScales; ++i) {

@@ -1,5 +1,5 @@
-// Light of a water surface, seen from above or from below, over the pixels that show it (water_surface.frag): reflection
-// and refraction by the Fresnel equations; light is absorbed and scattered in the water (Beer-Lambert). Definitions
+// Shading of a water surface, from above or from below, in the pixels that show it (water_surface.frag): reflection and
+// refraction by the Fresnel equations; light is absorbed and scattered in the water (Beer-Lambert). Definitions
 // ATTRIBUTES: also writes the G-buffer; FROM_BELOW: the camera may see the surface from below (a software OpenGL executes
 // both sides of every if); and those of lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
 #version 450
@@ -7,7 +7,7 @@
 #define ON_WATER
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
-#include "lib/water_seen.glsl"
+#include "lib/water_visibility.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"
@@ -19,7 +19,7 @@
 #include "lib/water_tracing.glsl"
 #include "lib/water_refraction.glsl"
 
-layout(binding = kSeenWaterUnit) uniform usampler2DArray seen_water;  // water_surface.frag
+layout(binding = kVisibleWaterUnit) uniform usampler2DArray visible_water;  // water_surface.frag
 
 #ifdef ATTRIBUTES
 layout(location = 1) out uvec4 surface;
@@ -31,20 +31,20 @@ const float kSurfaceTransmittance = 0.54;    // transmittance of the surface for
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    SeenWater seen = unpack_seen_water(
-        texelFetch(seen_water, ivec3(pixel, 0), 0), texelFetch(seen_water, ivec3(pixel, 1), 0));
-    WaterRecord water = water_record(seen.body);
-    vec3 position = world_position(gl_FragCoord.xy, seen.depth);
+    VisibleWater visible = unpack_visible_water(
+        texelFetch(visible_water, ivec3(pixel, 0), 0), texelFetch(visible_water, ivec3(pixel, 1), 0));
+    WaterRecord water = water_record(visible.body);
+    vec3 position = world_position(gl_FragCoord.xy, visible.depth);
     vec3 to_camera = normalize(view.camera_ws.xyz - position);
-    WaterBend bend = field_bend(water, seen.rest, seen.footprint);
-    bend.by_x += seen.by_x;
-    bend.by_z += seen.by_z;
-    bend.variance += seen.variance;
-    add_detail(bend, seen.body, seen.rest, seen.footprint);
+    WaterBend bend = field_bend(water, visible.rest, visible.footprint);
+    bend.by_x += visible.by_x;
+    bend.by_z += visible.by_z;
+    bend.variance += visible.variance;
+    add_detail(bend, visible.body, visible.rest, visible.footprint);
     vec3 up = water_to_world(water, water_normal(bend));
     float roughness = sqrt(sqrt(kSmooth + bend.variance));  // a normal distribution's alpha is the root of this
 #ifdef FROM_BELOW
-    bool above = seen.above;
+    bool above = visible.above;
 #else
     const bool above = true;
 #endif
@@ -54,7 +54,7 @@ void main() {
     normal = facing < 0.02 ? normalize(normal + (0.02 - facing) * to_camera) : normal;
     float cosine = max(dot(normal, to_camera), 1e-3);
     float index = above ? water.shape.w : 1.0 / water.shape.w;
-    float share = water_share(water, above, cosine);
+    float reflectance = water_reflectance(water, above, cosine);
 
     // Light on the water, to be scattered in it or reflected as glints.
     SurfaceSample s;
@@ -68,13 +68,13 @@ void main() {
     s.model = kModelPbr;
     set_plain(s);
     Reflector r = make_reflector(s, to_camera);
-    float head_on = (water.shape.w - 1.0) / (water.shape.w + 1.0);
-    r.specular_0 = vec3(head_on * head_on);
+    float normal_incidence = (water.shape.w - 1.0) / (water.shape.w + 1.0);
+    r.specular_0 = vec3(normal_incidence * normal_incidence);
     r.specular_90 = vec3(1.0);
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     if (above) {
         add_directional(sum, r, position, gl_FragCoord.xy);
-        add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(seen.depth)), position, gl_FragCoord.xy);
+        add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(visible.depth)), position, gl_FragCoord.xy);
     }
     vec3 glints = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
     vec3 falling = sum.diffuse / kPi + irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
@@ -82,12 +82,12 @@ void main() {
     vec3 extinction = water_extinction(water);
     vec3 glow = falling * (kUpwelling * kSurfaceTransmittance) * water.scattering.rgb / max(extinction, vec3(1e-6));
 
-    vec3 bent = share < 1.0 ? refract(-to_camera, normal, 1.0 / index) : -normal;
-    float below = water.absorption.w + position.y - water.origin.y;  // down to the ground
-    float max_distance = above && water.absorption.w > 0.0 ? 1.05 * below / max(-bent.y, 0.05) : kInfiniteDistance;
+    vec3 bent = reflectance < 1.0 ? refract(-to_camera, normal, 1.0 / index) : -normal;
+    float depth = water.absorption.w + position.y - water.origin.y;  // height above the bottom [m]
+    float max_distance = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kInfiniteDistance;
     RayHit through = refracted_light(water, position, normal, bent, max_distance, above);
-    vec3 left = exp(-extinction * through.path);
-    vec3 refracted = through.color * left + glow * (1.0 - left);
+    vec3 transmittance = exp(-extinction * through.path);
+    vec3 refracted = through.color * transmittance + glow * (1.0 - transmittance);
     vec3 away = reflect(-to_camera, normal);
     vec3 around = environment_light(position, normal, away, roughness).mirrored;
     Side side = Side(water.origin.y - 0.02, 1.0);
@@ -101,15 +101,15 @@ void main() {
         side = Side(water.origin.y + 0.02, -1.0);
     }
 #endif
-    RayHit found = RayHit(around, kInfiniteDistance);
+    RayHit hit = RayHit(around, kInfiniteDistance);
 #if defined(FROM_BELOW) || !defined(NO_SCREEN_REFLECTION)
-    found = trace_reflection(position, away, around, side);
+    hit = trace_reflection(position, away, around, side);
 #endif
 #ifdef LOOKS
     bool traced = !above || reflection_of(water) == kScreenReflection;
-    vec3 mirror = traced ? found.color : around;
+    vec3 mirror = traced ? hit.color : around;
 #else
-    vec3 mirror = found.color;
+    vec3 mirror = hit.color;
 #endif
 #ifdef PLANAR
     if (reflection_of(water) == kPlanarReflection) {
@@ -118,15 +118,15 @@ void main() {
 #endif
 #ifdef FROM_BELOW
     if (!above) {
-        mirror = found.path < kInfiniteDistance ? mix(scattered, found.color, exp(-extinction * found.path)) : around;
+        mirror = hit.path < kInfiniteDistance ? mix(scattered, hit.color, exp(-extinction * hit.path)) : around;
     }
 #endif
 #ifdef OCEAN
     refracted = above ? with_bubbles(refracted, bend.foam, falling, extinction) : refracted;
 #endif
-    vec3 color = mix(refracted, mirror, share) + glints;
+    vec3 color = mix(refracted, mirror, reflectance) + glints;
 #ifdef OCEAN
-    color = above ? with_foam(color, bend.foam, seen.rest, seen.footprint, falling) : color;
+    color = above ? with_foam(color, bend.foam, visible.rest, visible.footprint, falling) : color;
 #endif
     radiance = vec4(storable(color), 1.0);
 #ifdef ATTRIBUTES

@@ -27,7 +27,7 @@ struct WaveLineRecord {
 };
 
 struct WaveRingRecord {
-    vec4 place;  // center [m], first and last radius [m]
+    vec4 circle; // center [m], inner and outer radius [m]
     vec4 phase;  // at the center, current and previous [rad]; k [rad/m]; amplitude [m]
     vec4 fade;   // radius from which it fades [m], 0 = none; 1: smooth edges; offset of its radii in the previous
                  // frame [m]; 0
@@ -43,7 +43,7 @@ const uint kWaveRingTexels = 3u;
 
 // Bindings.
 const uint kWaterPatchesUnit = 0u;
-const uint kSeenWaterUnit = 0u;
+const uint kVisibleWaterUnit = 0u;
 const uint kWatersUnit = 1u;
 const uint kWaveLinesUnit = 2u;
 const uint kWaveRingsUnit = 3u;

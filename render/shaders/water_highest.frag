@@ -1,5 +1,5 @@
-// Height of the highest surface in each tile of kHighestTile pixels, so that rays above water skip what lies below it and
-// empty sky (lib/water_tracing.glsl).
+// Height of the highest surface in each tile of kHighestTile pixels, so that rays above water skip the surfaces below
+// it and empty sky (lib/water_tracing.glsl).
 #version 450
 #include "lib/view.glsl"
 #include "water_gpu.h"

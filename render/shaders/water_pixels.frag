@@ -1,11 +1,11 @@
-// Where water is seen, as the depth at which water.frag is drawn.
+// Marks pixels that show water by the depth at which water.frag is drawn.
 #version 450
 #include "generated/model_numbers.glsl"
 #include "water_gpu.h"
 
-layout(binding = kSeenWaterUnit) uniform usampler2DArray seen_water;  // water_surface.frag
+layout(binding = kVisibleWaterUnit) uniform usampler2DArray visible_water;  // water_surface.frag
 
 void main() {
-    bool is_water = texelFetch(seen_water, ivec3(gl_FragCoord.xy, 0), 0).w != 0u;
+    bool is_water = texelFetch(visible_water, ivec3(gl_FragCoord.xy, 0), 0).w != 0u;
     gl_FragDepth = is_water ? float(kModelPbr) / 16.0 : 0.0;
 }

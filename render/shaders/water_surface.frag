@@ -1,7 +1,7 @@
-// What is seen of a water surface, for water.frag to light pixel by pixel: its triangles are small, and a GPU shades
-// more than the pixels of each. Definition VELOCITY.
+// Visibility buffer of water surfaces, shaded per pixel by water.frag: triangles are small, and a GPU shades more
+// pixels than each covers. Definition VELOCITY.
 #version 450
-#include "lib/water_seen.glsl"
+#include "lib/water_visibility.glsl"
 #include "lib/velocity.glsl"
 #include "lib/view.glsl"
 
@@ -13,7 +13,7 @@ layout(location = 4) in vec3 wave_by_z;
 layout(location = 2) in vec3 previous_clip;
 layout(location = 2) out vec2 velocity;
 #endif
-layout(location = 0) out uvec4 place;
+layout(location = 0) out uvec4 position;
 layout(location = 1) out uvec4 bend;
 
 void main() {
@@ -21,9 +21,9 @@ void main() {
     vec2 along = dFdy(rest);
     // For elongated footprints less blur than needed, so that grazing views stay crisp.
     float footprint = sqrt(sqrt(dot(across, across) * dot(along, along)));
-    uvec4 texels[2] = pack_seen_water(SeenWater(
+    uvec4 texels[2] = pack_visible_water(VisibleWater(
         body, gl_FrontFacing, rest, gl_FragCoord.z, footprint, wave_by_x.xyz, wave_by_z, wave_by_x.w));
-    place = texels[0];
+    position = texels[0];
     bend = texels[1];
 #ifdef VELOCITY
     vec2 now = 2.0 * gl_FragCoord.xy * view.size.zw - 1.0 - vec2(view.ray_right.w, view.ray_up.w);

@@ -17,7 +17,7 @@ layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 layout(binding = kWaterVeilDepthUnit) uniform sampler2D scene_depth;
 
 uniform int body;         // index of the water around the camera
-uniform bool at_surface;  // its waves may reach the camera
+uniform bool at_surface;  // its waves may rise to the camera
 
 layout(location = 0) out vec4 radiance;
 
@@ -49,14 +49,14 @@ float distance_to_side(WaterRecord water, vec3 direction) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 seen = texelFetch(scene_radiance, pixel, 0).rgb;
+    vec3 scene = texelFetch(scene_radiance, pixel, 0).rgb;
     float depth = texelFetch(scene_depth, pixel, 0).r;
     WaterRecord water = water_record(body);
     vec3 ray = view_ray(gl_FragCoord.xy);
     vec3 lens = view.camera_ws.xyz + ray * view.camera_ws.w;
     float path = depth > 0.0 ? view_distance(depth) * length(ray) : kInfiniteDistance;
     path = min(path, distance_to_side(water, normalize(ray)));
-    vec3 left = exp(-water_extinction(water) * path);
+    vec3 transmittance = exp(-water_extinction(water) * path);
     float below = max(water.origin.y - view.camera_ws.y, 0.0);
 #ifdef UNDER_WATER
     Underwater around = underwater_at(lens);
@@ -67,6 +67,7 @@ void main() {
 #else
     vec3 downwelling = downwelling_light(water);
 #endif
-    vec3 veiled = seen * left + scattered_light(water, downwelling, below, normalize(ray)) * (1.0 - left);
-    radiance = vec4(storable(is_under(water, lens) ? veiled : seen), 1.0);
+    vec3 scattered = scattered_light(water, downwelling, below, normalize(ray));
+    vec3 veiled = scene * transmittance + scattered * (1.0 - transmittance);
+    radiance = vec4(storable(is_under(water, lens) ? veiled : scene), 1.0);
 }

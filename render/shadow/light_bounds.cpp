@@ -113,38 +113,38 @@ LightBounds light_bounds(const RenderView& view, const Vec3& center, float radiu
     return bounds;
 }
 
-RangeSphere range_sphere(const LightRange& reach) {
+RangeSphere range_sphere(const LightRange& range) {
     // A sector of half angle up to 45 degrees fits into the sphere through its apex and rim; a
     // wider one, up to 90 degrees, into the sphere around the rim.
-    const bool cone = reach.axis != Vec3(0) && reach.cosine > 0 && std::isfinite(reach.radius);
+    const bool cone = range.axis != Vec3(0) && range.cosine > 0 && std::isfinite(range.radius);
     if (!cone) {
-        return {reach.center, reach.radius};
+        return {range.center, range.radius};
     }
-    if (2 * square(reach.cosine) >= 1) {
-        const float r = 0.5f * reach.radius / reach.cosine;
-        return {reach.center + reach.axis * r, r};
+    if (2 * square(range.cosine) >= 1) {
+        const float r = 0.5f * range.radius / range.cosine;
+        return {range.center + range.axis * r, r};
     }
-    const float sine = std::sqrt(1 - square(reach.cosine));
-    return {reach.center + reach.axis * (reach.radius * reach.cosine), reach.radius * sine};
+    const float sine = std::sqrt(1 - square(range.cosine));
+    return {range.center + range.axis * (range.radius * range.cosine), range.radius * sine};
 }
 
-bool reaches_box(const LightRange& reach, const Bounds& box) {
-    const Vec3 nearest = glm::clamp(reach.center, box.min, box.max);
-    const Vec3 offset = nearest - reach.center;
-    if (glm::dot(offset, offset) > square(reach.radius)) {
+bool reaches_box(const LightRange& range, const Bounds& box) {
+    const Vec3 nearest = glm::clamp(range.center, box.min, box.max);
+    const Vec3 offset = nearest - range.center;
+    if (glm::dot(offset, offset) > square(range.radius)) {
         return false;
     }
-    if (reach.axis == Vec3(0) || reach.cosine <= 0) {
+    if (range.axis == Vec3(0) || range.cosine <= 0) {
         return true;
     }
     // The sphere around the box against the cone, moved back along its axis to account for the
     // sphere's radius.
-    const Vec3 to_box = center(box) - reach.center;
+    const Vec3 to_box = center(box) - range.center;
     const float radius = glm::length(half_extent(box));
-    const float along = glm::dot(to_box, reach.axis);
+    const float along = glm::dot(to_box, range.axis);
     const float across = std::sqrt(std::max(glm::dot(to_box, to_box) - square(along), 0.0f));
-    const float sine = std::sqrt(std::max(1 - square(reach.cosine), 0.0f));
-    return across * reach.cosine - along * sine <= radius;
+    const float sine = std::sqrt(std::max(1 - square(range.cosine), 0.0f));
+    return across * range.cosine - along * sine <= radius;
 }
 
 }  // namespace limn

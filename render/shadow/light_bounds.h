@@ -17,7 +17,7 @@ struct LightRange;
 struct LightBounds {
     int x = 0;
     int y = 0;
-    int width = 0;   ///< 0: the light reaches nothing on screen
+    int width = 0;   ///< 0: nothing on screen is within its range
     int height = 0;  ///< [px]
     float depth_min = 0;
     float depth_max = 1;
@@ -41,15 +41,15 @@ struct SlopeRange {
 /// For a sphere in world space; an infinite radius gives the whole screen.
 [[nodiscard]] LightBounds light_bounds(const RenderView& view, const Vec3& center, float radius);
 
-/// A tight bounding sphere of the light's range: for a narrow cone centered on its axis.
+/// A tight bounding sphere of the light's range; that of a narrow cone is centered on its axis.
 struct RangeSphere {
     Vec3 center;
     float radius = 0;
 };
-[[nodiscard]] RangeSphere range_sphere(const LightRange& reach);
+[[nodiscard]] RangeSphere range_sphere(const LightRange& range);
 
 /// Whether the light can reach something in the box: sphere against box, and for spots also the
 /// cone against the sphere around the box (shadow.caster-cull).
-[[nodiscard]] bool reaches_box(const LightRange& reach, const Bounds& box);
+[[nodiscard]] bool reaches_box(const LightRange& range, const Bounds& box);
 
 }  // namespace limn

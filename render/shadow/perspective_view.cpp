@@ -45,7 +45,7 @@ struct Range {
         low = std::min(low, x);
         high = std::max(high, x);
     }
-    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+    [[nodiscard]] double center() const { return 0.5 * (low + high); }
     [[nodiscard]] double half() const { return std::max(0.5 * (high - low), 1e-9); }
 };
 
@@ -60,8 +60,8 @@ dmat4 clip_from_rows(
     const dvec4& s, const Range& range_s, const dvec4& t, const Range& range_t, const dvec4& depth,
     const dvec4& q, double widening) {
     dmat4 rows;
-    rows[0] = (s - range_s.middle() * q) / (range_s.half() * widening);
-    rows[1] = (t - range_t.middle() * q) / (range_t.half() * widening);
+    rows[0] = (s - range_s.center() * q) / (range_s.half() * widening);
+    rows[1] = (t - range_t.center() * q) / (range_t.half() * widening);
     rows[2] = depth;
     rows[3] = q;
     return glm::transpose(rows);
@@ -87,21 +87,21 @@ dmat4 fit_parallel(const dvec3& to_light, std::span<const dvec3> points, double 
 
 /// For a light at a finite position; `inverted`: farther in distorted space is nearer to the light.
 std::optional<dmat4>
-fit_position(const dvec3& place, bool inverted, std::span<const dvec3> points, double widening) {
-    dvec3 middle(0);
+fit_position(const dvec3& position, bool inverted, std::span<const dvec3> points, double widening) {
+    dvec3 center(0);
     for (const dvec3& p : points) {
-        middle += p / static_cast<double>(points.size());
+        center += p / static_cast<double>(points.size());
     }
-    const double distance = glm::length(middle - place);
+    const double distance = glm::length(center - position);
     if (!(distance > 1e-9)) {
         return std::nullopt;
     }
-    const ViewAxes axes = view_axes((middle - place) / distance);
+    const ViewAxes axes = view_axes((center - position) / distance);
     Range s;
     Range t;
     Range inverse;  // of the distance along the axis
     for (const dvec3& p : points) {
-        const dvec3 from = p - place;
+        const dvec3 from = p - position;
         const double along = glm::dot(axes.forward, from);
         if (!(along > kMinViewCosine * glm::length(from))) {
             return std::nullopt;
@@ -110,7 +110,7 @@ fit_position(const dvec3& place, bool inverted, std::span<const dvec3> points, d
         t.grow(glm::dot(axes.up, from) / along);
         inverse.grow(1 / along);
     }
-    const auto row = [&](const dvec3& axis) { return plane(axis, -glm::dot(axis, place)); };
+    const auto row = [&](const dvec3& axis) { return plane(axis, -glm::dot(axis, position)); };
     const dvec4 q = row(axes.forward);
     const double scale = 1 / ((2 + 2 * kSpare) * inverse.half());
     const dvec4 one = plane({0, 0, 0}, 1);

@@ -20,10 +20,10 @@ namespace limn {
 // If the w of C l is negative, the light being behind the camera, the order of distances is
 // inverted, and so are depths.
 //
-// C is not the camera itself but a virtual one behind it. The book moves it back until it sees all
-// casters; here none is lost, since along a ray of the light depth grows as w / q, which is
-// continuous where a caster crosses the camera's plane, and what lies in front of the map's near
-// plane is clamped to it. Moving back only reduces the distortion: initially to the square root of
+// C is not the camera itself but a virtual one behind it. The book moves it back until all casters
+// are in view; here none is lost, since along a ray of the light depth grows as w / q, which is
+// continuous where a caster crosses the camera's plane, and casters in front of the map's near
+// plane are clamped to it. Moving back only reduces the distortion: initially to the square root of
 // near and far (Wimmer et al. 2004), more if the light's view of the cube is too wide, in the limit
 // to the uniform map. A light inside the camera's view volume has no such view.
 //

@@ -14,16 +14,16 @@ struct AtlasRect {
 };
 
 /// Allocates squares whose sides are powers of two: a two-dimensional buddy allocator. A square
-/// stays in place until it is released; four free siblings are merged.
+/// does not move until it is released; four free siblings are merged.
 class ShadowAtlas {
   public:
     /// `size`: a power of two.
     explicit ShadowAtlas(int size);
 
-    /// A square of side `size`, a power of two; nullopt if there is no room.
+    /// A square of side `size`, a power of two; nullopt if none is free.
     [[nodiscard]] std::optional<AtlasRect> allocate(int size);
     void release(const AtlasRect& rect);
-    /// Doubles the side; what was handed out stays where it is.
+    /// Doubles the side; allocated squares stay where they are.
     void grow();
 
     [[nodiscard]] int size() const { return size_; }

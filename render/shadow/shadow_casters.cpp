@@ -13,7 +13,7 @@
 namespace limn {
 
 CasterVolume make_caster_volume(const ShadowView& view) {
-    CasterVolume volume = {make_frustum(view.clip_from_world), view.shading, view.eye, view.reach};
+    CasterVolume volume = {make_frustum(view.clip_from_world), view.shading, view.eye, view.range};
     const Mat4 rows = glm::transpose(view.clip_from_world);
     // s = row_s p / q changes by (row_s - s row_q) / q, and s is within -1 .. 1.
     const float slope = std::max(glm::length(Vec3(rows[0])), glm::length(Vec3(rows[1])));

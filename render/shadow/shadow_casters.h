@@ -9,7 +9,7 @@
 namespace limn {
 
 // The shadow casters of a view: opaque and alpha-tested mesh instances without NoShadow that touch
-// the view's frustum and the light's range. Not culled by the camera: objects out of sight may cast
+// the view's frustum and the light's range. Not culled by the camera: objects off screen may cast
 // visible shadows.
 
 [[nodiscard]] CasterVolume make_caster_volume(const ShadowView& view);

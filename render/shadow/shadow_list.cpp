@@ -43,7 +43,7 @@ float near_of(const Shadow& shadow) {
     return std::max(0.5f * shadow.source_size, kMinNear);
 }
 
-/// The part of the camera's view that the light can reach; nullopt if it is empty.
+/// The part of the camera's view within the light's range; nullopt if it is empty.
 std::optional<ViewSlice>
 slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     const Vec2 widest = widest_tangent(view);
@@ -51,12 +51,12 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     if (light.kind == LightKind::Directional) {
         return slice;
     }
-    LightRange reach = {light.position, light.radius};
+    LightRange range = {light.position, light.radius};
     if (light.kind == LightKind::Spot) {
-        reach.axis = light.axis;
-        reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi));
+        range.axis = light.axis;
+        range.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi));
     }
-    const RangeSphere sphere = range_sphere(reach);
+    const RangeSphere sphere = range_sphere(range);
     const LightBounds bounds = light_bounds(view, sphere.center, sphere.radius);
     if (is_empty(bounds)) {
         return std::nullopt;
@@ -124,10 +124,10 @@ bool ShadowCollector::request_perspective(const RenderView& view, LightViews& re
         return false;
     }
     const bool sun = light.kind == LightKind::Directional;
-    const Vec4 place = sun ? Vec4(-light.axis, 0) : Vec4(light.position, 1);
+    const Vec4 source = sun ? Vec4(-light.axis, 0) : Vec4(light.position, 1);
     const int guard = guard_of(request.settings);
     const auto found =
-        make_perspective_view(view, place, *slice, request.settings.resolution, guard);
+        make_perspective_view(view, source, *slice, request.settings.resolution, guard);
     if (!found) {
         return false;
     }
@@ -154,7 +154,7 @@ void ShadowCollector::request_views(
         const int resolution = settings.resolution;
         const int guard = guard_of(settings);
         if (perspective) {
-            // already has its single view
+            // its single view is already there
         } else if (light.kind == LightKind::Directional) {
             request_cascades(view, request);
         } else if (light.kind == LightKind::Spot && light.outer_angle <= kMaxSpotViewAngle) {
@@ -172,7 +172,7 @@ void ShadowCollector::request_views(
         request.count = views_.size() - request.first_view;
         request.view_kind = request.kind == layout::kShadowCascades ? kind : 0u;
         for (std::size_t i = request.first_view; i < views_.size(); ++i) {
-            views_[i].reach = light.radius;
+            views_[i].range = light.radius;
             views_[i].detail = perspective ? 0.0f : settings.detail;
         }
         requests_.push_back(request);
@@ -204,34 +204,34 @@ ShadowCollector::cached_map(const LightViews& request, std::size_t number) {
     return maps_.at(key_of_map(request, number));
 }
 
-/// False if there is no room for all of the light's views.
-bool ShadowCollector::place_light(LightViews& request) {
+/// False if the atlas cannot hold all of the light's views.
+bool ShadowCollector::allocate_light(LightViews& request) {
     for (std::size_t i = 0; i < request.count; ++i) {
         const int size = request.settings.resolution;
         const auto [found, fresh] = maps_.try_emplace(key_of_map(request, i), CachedMap{});
         CachedMap& view = found->second;
         view.used = true;
-        if (!fresh && view.place.size == size) {
+        if (!fresh && view.rect.size == size) {
             continue;
         }
         if (!fresh) {
-            atlas_.release(view.place);
+            atlas_.release(view.rect);
         }
-        const std::optional<AtlasRect> place = atlas_.allocate(size);
-        if (!place) {
+        const std::optional<AtlasRect> rect = atlas_.allocate(size);
+        if (!rect) {
             maps_.erase(found);
             return false;
         }
-        view = {.place = *place, .used = true};
+        view = {.rect = *rect, .used = true};
     }
-    request.placed = true;
+    request.allocated = true;
     return true;
 }
 
 void ShadowCollector::release_light(const LightViews& request) {
     for (std::size_t i = 0; i < request.count; ++i) {
         if (const auto found = maps_.find(key_of_map(request, i)); found != maps_.end()) {
-            atlas_.release(found->second.place);
+            atlas_.release(found->second.rect);
             maps_.erase(found);
         }
     }
@@ -249,16 +249,16 @@ bool ShadowCollector::evict_unused() {
                [&](const auto& entry) {
                    const bool unused = !entry.second.used;
                    if (unused) {
-                       atlas_.release(entry.second.place);
+                       atlas_.release(entry.second.rect);
                    }
                    return unused;
                })
            > 0;
 }
 
-/// Allocates space for every view: free, then that of maps no longer used, then in an atlas twice
-/// as large, in which all others keep their places and depths.
-void ShadowCollector::place_views() {
+/// Allocates space for every view: first free space, then that of unused maps, then by doubling the
+/// atlas, in which all others keep their positions and depths.
+void ShadowCollector::allocate_views() {
     for (const LightViews& request : requests_) {
         for (std::size_t i = 0; i < request.count; ++i) {
             if (const auto found = maps_.find(key_of_map(request, i)); found != maps_.end()) {
@@ -270,10 +270,10 @@ void ShadowCollector::place_views() {
         atlas_.grow();
     }
     for (std::size_t i = 0; i < requests_.size();) {
-        if (place_light(requests_[i])) {
+        if (allocate_light(requests_[i])) {
             ++i;
         } else if (evict_unused()) {
-            // once more
+            // try again
         } else if (atlas_.size() < kMaxAtlasSize) {
             atlas_.grow();
         } else {
@@ -285,7 +285,7 @@ void ShadowCollector::place_views() {
 
 void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
     for (const LightViews& request : requests_) {
-        if (!request.placed) {
+        if (!request.allocated) {
             ++list.unserved;
             continue;
         }
@@ -307,7 +307,7 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
         }
         for (std::size_t i = 0; i < request.count; ++i) {
             list.records.push_back(make_shadow_record(
-                views_[request.first_view + i], cached_map(request, i).place,
+                views_[request.first_view + i], cached_map(request, i).rect,
                 static_cast<float>(request.settings.filter), request.settings.source_size,
                 request.settings.bias));
             list.records.back().splits = request.splits;
@@ -324,7 +324,7 @@ void ShadowCollector::collect(
     list.unserved = 0;
     list.kinds = {};
     request_views(view.camera, view.kind, lights, list);
-    place_views();
+    allocate_views();
     write_records(lights, list);
     list.atlas_size = list.records.empty() ? 0 : atlas_.size();
     if (list.unserved > 0 && !reported_) {
@@ -339,13 +339,13 @@ void ShadowCollector::collect(
     }
 
     volumes_.clear();
-    for (const ShadowView& one : views_) {
-        volumes_.push_back(make_caster_volume(one));
+    for (const ShadowView& shadow_view : views_) {
+        volumes_.push_back(make_caster_volume(shadow_view));
     }
     signatures_.resize(views_.size());
     hash_casters(*frame.items, volumes_, signatures_);
     for (const LightViews& request : requests_) {
-        for (std::size_t i = 0; request.placed && i < request.count; ++i) {
+        for (std::size_t i = 0; request.allocated && i < request.count; ++i) {
             const std::size_t v = request.first_view + i;
             CachedMap& map = cached_map(request, i);
             const std::uint64_t signature = hash_combine(
@@ -360,9 +360,9 @@ void ShadowCollector::collect(
             map.clip_from_world = views_[v].clip_from_world;
             layout::ViewBlock block{};
             ShadowDraw& draw = list.due.emplace_back();
-            draw.place = map.place;
+            draw.rect = map.rect;
             draw.clamp_depth = views_[v].clamp_depth;
-            // All that casts shadows may enter a map later.
+            // Any caster may enter a map later.
             const bool all = frame.warm_up && list.due.size() == 1;
             collector_.collect_casters(
                 *frame.items, all ? CasterVolume{kEverywhere} : volumes_[v], *frame.ring,

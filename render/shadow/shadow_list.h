@@ -14,15 +14,15 @@
 
 namespace limn {
 
-// All shadow maps of a frame: their views, their places in the shared atlas, and which of them must
-// be redrawn. A view keeps its place and its cached depths as long as neither its light nor a
-// caster in it changes; a removed light releases its places.
+// All shadow maps of a frame: their views, their rectangles in the shared atlas, and which of them
+// must be redrawn. A view keeps its rectangle and its cached depths as long as neither its light
+// nor a caster in it changes; a removed light releases its rectangles.
 //
 //     collector.collect(frame, view, water_requests, lights, shadows);
 
 /// A view to be redrawn in this frame.
 struct ShadowDraw {
-    AtlasRect place;
+    AtlasRect rect;
     bool clamp_depth = false;
     gpu::RingSlice view_block;  ///< layout::ViewBlock
     InstanceList casters;
@@ -42,7 +42,7 @@ struct WaterShadows {
     std::vector<WaterShadow> requests;
 };
 
-/// What shaders must know of shadows: the definitions of lib/shadow.glsl.
+/// The kinds of shadows that shaders must support: the definitions of lib/shadow.glsl.
 struct ShadowKinds {
     bool maps = false;      ///< some light, or water, has a map
     bool masks = false;     ///< some light has shadow volumes
@@ -58,7 +58,7 @@ struct ShadowList {
     std::vector<ShadowDraw> due;
     ShadowKinds kinds;   ///< of the maps of this view; ShadowEffect adds those of the whole level
     int atlas_size = 0;  ///< side [texels]; 0: no shadow maps
-    int unserved = 0;    ///< lights without room in the atlas: they cast no shadow
+    int unserved = 0;    ///< lights that do not fit into the atlas: they cast no shadow
 };
 
 /// The shadow maps of a view, published when they are declared in the frame graph.
@@ -78,7 +78,7 @@ class ShadowCollector {
     /// is needed.
     void begin_frame();
     /// Sets LightRecord::shadow and LightList::shadows for the lights that got maps. Views of
-    /// different kinds have cascades of their own, views of one kind share them in turn.
+    /// different kinds have cascades of their own; successive views of one kind reuse the same.
     void collect(
         const FrameData& frame, const ViewData& view, std::span<const WaterShadow> waters,
         LightList& lights, ShadowList& list);
@@ -86,7 +86,7 @@ class ShadowCollector {
   private:
     /// A cached map, keyed by light, by the kind of the view if it depends on that, and by number.
     struct CachedMap {
-        AtlasRect place;
+        AtlasRect rect;
         Mat4 clip_from_world{0.0f};  ///< as last drawn
         std::uint64_t signature = 0;
         bool drawn = false;
@@ -104,7 +104,7 @@ class ShadowCollector {
         std::size_t first_view = 0;
         std::size_t count = 0;
         Vec4 splits = Vec4(INFINITY);
-        bool placed = false;
+        bool allocated = false;
     };
 
     void request_views(
@@ -112,10 +112,10 @@ class ShadowCollector {
     void request_cascades(const RenderView& view, LightViews& request);
     [[nodiscard]] bool request_perspective(const RenderView& view, LightViews& request);
     [[nodiscard]] CachedMapKey key_of_map(const LightViews& request, std::size_t number) const;
-    void place_views();
+    void allocate_views();
     /// Frees the maps that this frame has not used; false if there are none.
     bool evict_unused();
-    [[nodiscard]] bool place_light(LightViews& request);
+    [[nodiscard]] bool allocate_light(LightViews& request);
     void release_light(const LightViews& request);
     [[nodiscard]] CachedMap& cached_map(const LightViews& request, std::size_t number);
     void write_records(LightList& lights, ShadowList& list);

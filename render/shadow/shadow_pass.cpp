@@ -29,7 +29,7 @@ gpu::Texture make_atlas(int size) {
     return {"shadow atlas", {.format = GL_DEPTH_COMPONENT32F, .width = size, .height = size}};
 }
 
-/// Maps that were drawn keep their places and depths.
+/// Copies the drawn maps: they keep their positions and depths.
 void grow_atlas(gpu::Texture& atlas, int size) {
     if (atlas.width() >= size) {
         return;
@@ -46,21 +46,21 @@ void bind_shadows(PassContext& context, const ShadowBindings& shadows) {
     shadows.records.bind(context.device(), layout::kShadowViewsUnit);
 }
 
-/// Not by a scissored clear, for which a software OpenGL draws every pixel.
-void clear_map(const gpu::Texture& atlas, const AtlasRect& place) {
+/// Clears without the scissor test, with which a software OpenGL draws every pixel.
+void clear_map(const gpu::Texture& atlas, const AtlasRect& rect) {
     constexpr float kFar = 0;
     glClearTexSubImage(
-        atlas.id(), 0, place.x, place.y, 0, place.size, place.size, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+        atlas.id(), 0, rect.x, rect.y, 0, rect.size, rect.size, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
         &kFar);
 }
 
 void draw_map(
     PassContext& context, ProgramVariants& programs, const ViewData& view, const ShadowDraw& draw) {
     gpu::Device& device = context.device();
-    const AtlasRect& place = draw.place;
+    const AtlasRect& rect = draw.rect;
     const gpu::PipelineState state = {.cull = GL_NONE, .depth_clamp = draw.clamp_depth};
-    device.set_viewport(place.x, place.y, place.size, place.size);
-    device.set_scissor(place.x, place.y, place.size, place.size);
+    device.set_viewport(rect.x, rect.y, rect.size, rect.size);
+    device.set_scissor(rect.x, rect.y, rect.size, rect.size);
     device.apply(state);
     const gpu::RingSlice& block = draw.view_block;
     device.bind_uniforms(layout::kViewBinding, block.buffer, block.offset, block.size);
@@ -82,7 +82,7 @@ TextureId draw_maps(
             "shadows", mesh_reads(graph, *view.frame), writes,
             [&programs, &texture, &view, &list](PassContext& context) {
                 for (const ShadowDraw& draw : list.due) {
-                    clear_map(texture, draw.place);
+                    clear_map(texture, draw.rect);
                 }
                 for (const ShadowDraw& draw : list.due) {
                     draw_map(context, programs, view, draw);
@@ -93,7 +93,8 @@ TextureId draw_maps(
     return atlas;
 }
 
-/// Of all lights and waters of the level: which of them a view shows must not change programs.
+/// Of all lights and waters of the level, so that programs do not depend on which of them are in
+/// view.
 ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
     ShadowKinds kinds;
     for (const ShadowedLight& light : lights.shadowed) {
@@ -112,12 +113,12 @@ ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
         kinds.soft |= method != ShadowMethod::Hybrid && filter >= ShadowFilter::Soft;
         kinds.contact |= method != ShadowMethod::Hybrid && filter == ShadowFilter::ContactHardening;
     }
-    // Caustics are of directional light, and shadows fall on and into the water.
+    // Caustics need maps: shadows of directional light fall on and into the water.
     kinds.maps |= lights.directional > 0 && !world.query<const Water, const Caustics>().empty();
     return kinds;
 }
 
-/// What either needs: a light may have another kind of shadow than it asks for.
+/// The union: a light may have another kind of shadow than it requests.
 ShadowKinds both(const ShadowKinds& a, const ShadowKinds& b) {
     return {a.maps || b.maps,         a.masks || b.masks, a.cubes || b.cubes,
             a.cascades || b.cascades, a.soft || b.soft,   a.contact || b.contact};

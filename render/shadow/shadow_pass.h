@@ -18,15 +18,15 @@ namespace limn {
 // Order    before lighting
 // Shaders  mesh.vert, shadow_map.frag
 //
-// Casters are drawn double-sided: a wall casts a shadow whichever way it faces. The maps have no
-// bias; lighting applies it (lib/shadow.glsl).
+// Casters are drawn double-sided: a wall casts a shadow whichever side faces the light. The maps
+// have no bias; lighting applies it (lib/shadow.glsl).
 
 /// Maps and volumes of a view's lights. Publishes ShadowList and VolumeList in prepare(),
 /// ShadowMaps and ShadowMasks in draw(); sets the shadows of the view's LightList.
 struct ShadowEffect {
     ProgramVariants casters;
     gpu::Texture atlas;   ///< 1x1 until there is a shadow
-    ShadowKinds level{};  ///< of this frame: what the lights of the level may need
+    ShadowKinds level{};  ///< of this frame: kinds that the lights of the level may need
     ShadowCollector maps{};
     VolumeCollector volumes{};
     std::optional<ShadowVolumePass> volume_pass{};  ///< created with the first volume

@@ -77,9 +77,9 @@ std::array<float, kMaxCascades> split_cascades(float near, float far, int count)
     std::array<float, kMaxCascades> ends;
     ends.fill(INFINITY);
     for (int i = 0; i < count; ++i) {
-        const float share = static_cast<float>(i + 1) / static_cast<float>(count);
-        const float ratios = near * std::pow(far / near, share);
-        const float steps = near + (far - near) * share;
+        const float fraction = static_cast<float>(i + 1) / static_cast<float>(count);
+        const float ratios = near * std::pow(far / near, fraction);
+        const float steps = near + (far - near) * fraction;
         ends[static_cast<std::size_t>(i)] = 0.75f * ratios + 0.25f * steps;
     }
     return ends;
@@ -100,13 +100,13 @@ ShadowView make_cascade_view(
 
     const auto& pose = camera.world_from_camera.row;
     const Axes axes = axes_along(-to_sun);
-    glm::dvec3 middle;
+    glm::dvec3 center;
     for (int i = 0; i < 3; ++i) {
-        middle[i] = pose[i].w - along * pose[i].z;
+        center[i] = pose[i].w - along * pose[i].z;
     }
     // Snapped to whole texels along all three axes, so that depths repeat, too.
     const auto snapped = [&](const Vec3& axis) {
-        return std::floor(glm::dot(glm::dvec3(axis), middle) / texel) * texel;
+        return std::floor(glm::dot(glm::dvec3(axis), center) / texel) * texel;
     };
     const double right = snapped(axes.right);
     const double up = snapped(axes.up);
@@ -166,7 +166,7 @@ Frustum shading_planes(
         glm::dvec3 point;
         glm::dvec3 along;
     };
-    // A silhouette has at most six edges; those of the near side come last, as they bound least.
+    // A silhouette has at most six edges; those of the near plane come last, as they bound least.
     const Edge edges[] = {
         {kLeft, kBottom, eye, to_left + to_bottom - forward},
         {kLeft, kTop, eye, to_left + to_top - forward},
@@ -180,7 +180,7 @@ Frustum shading_planes(
         {kRight, kNear, eye + slice_near * to_right, up},
         {kBottom, kNear, eye + slice_near * to_bottom, right},
         {kTop, kNear, eye + slice_near * to_top, right}};
-    const glm::dvec3 middle = eye + 0.5 * (slice_near + slice_far) * forward;
+    const glm::dvec3 center = eye + 0.5 * (slice_near + slice_far) * forward;
 
     Frustum planes = kEverywhere;
     int count = 0;
@@ -192,7 +192,7 @@ Frustum shading_planes(
         if (!outline || count == kFrustumPlanes || length < 1e-6 * glm::length(edge.along)) {
             continue;
         }
-        normal /= glm::dot(normal, middle - edge.point) < 0 ? -length : length;
+        normal /= glm::dot(normal, center - edge.point) < 0 ? -length : length;
         planes.planes[count] = Vec4(Vec3(normal), margin - glm::dot(normal, edge.point));
         ++count;
     }
@@ -207,15 +207,15 @@ double texels_per_pixel(
     const glm::dvec3 n = normal;
     const double distance = -glm::dot(ray, axis(2));
     const glm::dmat4 rows = glm::transpose(glm::dmat4(view.clip_from_world));
-    const glm::dvec4 place(glm::dvec3(point), 1);
-    const double q = glm::dot(rows[3], place);
+    const glm::dvec4 position(glm::dvec3(point), 1);
+    const double q = glm::dot(rows[3], position);
 
     // Motion in the map when the ray through the pixel's center moves on to the next pixel.
     const auto texels = [&](const glm::dvec3& step) {
         const glm::dvec3 along = step - ray * (glm::dot(n, step) / glm::dot(n, ray));
         glm::dvec2 moved(0);
         for (int i = 0; i < 2; ++i) {
-            const double here = glm::dot(rows[i], place) / q;
+            const double here = glm::dot(rows[i], position) / q;
             moved[i] = glm::dot(glm::dvec3(rows[i]) - here * glm::dvec3(rows[3]), along) / q;
         }
         return moved * (0.5 * view.resolution);
@@ -228,19 +228,19 @@ double texels_per_pixel(
 }
 
 layout::ShadowViewRecord make_shadow_record(
-    const ShadowView& view, const AtlasRect& place, float filter, float source_size, float bias) {
+    const ShadowView& view, const AtlasRect& rect, float filter, float source_size, float bias) {
     // From clip space to texels of the atlas: the bias matrix; depths are 0 .. 1 already.
-    const double half = 0.5 * place.size;
+    const double half = 0.5 * rect.size;
     glm::dmat4 texels_from_clip(1.0);
     texels_from_clip[0][0] = half;
     texels_from_clip[1][1] = half;
-    texels_from_clip[3][0] = place.x + half;
-    texels_from_clip[3][1] = place.y + half;
+    texels_from_clip[3][0] = rect.x + half;
+    texels_from_clip[3][1] = rect.y + half;
     const glm::dmat4 shadow_from_world = texels_from_clip * glm::dmat4(view.clip_from_world);
     const glm::dmat4 world_from_shadow = glm::inverse(shadow_from_world);
     const glm::dmat4 rows = glm::transpose(shadow_from_world);
 
-    const auto scale = static_cast<float>(place.size) / static_cast<float>(view.resolution);
+    const auto scale = static_cast<float>(rect.size) / static_cast<float>(view.resolution);
     layout::ShadowViewRecord record{};
     record.row_s = Vec4(rows[0]);
     record.row_t = Vec4(rows[1]);
@@ -249,7 +249,7 @@ layout::ShadowViewRecord make_shadow_record(
     record.plane_s = Vec4(world_from_shadow[0]);
     record.plane_t = Vec4(world_from_shadow[1]);
     record.plane_r = Vec4(world_from_shadow[2]);
-    record.rect = {place.x, place.y, place.x + place.size, place.y + place.size};
+    record.rect = {rect.x, rect.y, rect.x + rect.size, rect.y + rect.size};
     record.settings = {
         filter, bias, view.penumbra * scale * source_size,
         static_cast<float>(std::max(view.guard - 2, 0))};

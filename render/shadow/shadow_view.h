@@ -16,12 +16,12 @@ namespace limn {
 // which maps the world to texels of the atlas.
 //
 // A border of `guard` texels around the covered region lets a filter sample without leaving the
-// view: cube faces overlap by it.
+// view: adjacent cube faces overlap by this border.
 
 struct ShadowView {
     Mat4 clip_from_world{1.0f};
     Vec3 eye = {0, 0, 0};      ///< for a sun: center of its map
-    float reach = INFINITY;    ///< casters farther than this from the eye are ignored [m]
+    float range = INFINITY;    ///< casters farther than this from the eye are ignored [m]
     int resolution = 512;      ///< side [texels], a power of two
     int guard = 2;             ///< [texels], < resolution / 2
     bool clamp_depth = false;  ///< casters in front of the near plane are clamped to it
@@ -35,8 +35,8 @@ struct ShadowView {
 inline constexpr float kMaxSpotViewAngle = radians(75.0f);
 
 /// View of a spot at `eye` along `axis` (unit) within `half_angle` [rad]. The map's rows run along
-/// `right` if that is perpendicular to the axis: so shadow edges on walls at grazing light have no
-/// stair steps.
+/// `right` if that is perpendicular to the axis, so that shadow edges on walls at grazing light
+/// have no stair steps.
 [[nodiscard]] ShadowView make_spot_view(
     const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard,
     const Vec3& right = {0, 0, 0});
@@ -60,7 +60,7 @@ inline constexpr int kMaxCascades = 4;
 
 /// Planes that bound the possible casters into the slice of the camera's view between two
 /// distances, `margin` [m] farther out: the slice extruded toward the sun, bounded by planes
-/// through the edges of its silhouette as seen from the sun.
+/// through the edges of its silhouette as viewed from the sun.
 [[nodiscard]] Frustum shading_planes(
     const RenderView& camera, const Vec3& to_sun, double slice_near, double slice_far,
     double margin);
@@ -70,11 +70,11 @@ inline constexpr int kMaxCascades = 4;
 [[nodiscard]] double texels_per_pixel(
     const ShadowView& view, const RenderView& camera, const Vec3& point, const Vec3& normal);
 
-/// Record for lib/shadow.glsl of a view at `place` in the atlas.
+/// Record for lib/shadow.glsl of a view drawn into `rect` of the atlas.
 ///   filter       ShadowFilter as a number
 ///   source_size  [m] or [rad]
 ///   bias         Shadow::bias
 [[nodiscard]] layout::ShadowViewRecord make_shadow_record(
-    const ShadowView& view, const AtlasRect& place, float filter, float source_size, float bias);
+    const ShadowView& view, const AtlasRect& rect, float filter, float source_size, float bias);
 
 }  // namespace limn

@@ -20,19 +20,19 @@ constexpr std::uint32_t kPrism = 4;
 constexpr std::uint32_t kZFail = 2;
 constexpr std::uint32_t kMirrored = 1;
 
-/// Enlarges a finite light range slightly, so that rounding at the rim gives no false shadow.
+/// Enlarges a finite light range slightly, so that rounding at its border causes no false shadow.
 constexpr float kVolumeRim = 1.001f;
 
 LightRange volume_range(const ShadowedLight& light) {
     if (light.kind == LightKind::Directional) {
         return {{0, 0, 0}, INFINITY};
     }
-    LightRange reach = {light.position, light.radius * kVolumeRim};
+    LightRange range = {light.position, light.radius * kVolumeRim};
     if (light.kind == LightKind::Spot) {
-        reach.axis = light.axis;
-        reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi)) / kVolumeRim;
+        range.axis = light.axis;
+        range.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi)) / kVolumeRim;
     }
-    return reach;
+    return range;
 }
 
 Vec4 homogeneous(const ShadowedLight& light) {
@@ -69,9 +69,9 @@ struct Interval {
     float high;
 };
 Interval project(const Bounds& box, const Vec3& n) {
-    const float middle = glm::dot(n, center(box));
+    const float mid = glm::dot(n, center(box));
     const float half = glm::dot(glm::abs(n), half_extent(box));
-    return {middle - half, middle + half};
+    return {mid - half, mid + half};
 }
 
 }  // namespace
@@ -83,23 +83,23 @@ ShadowMethod choose_shadow_method(ShadowMethod requested, bool has_volume) {
     return has_volume ? ShadowMethod::Volume : ShadowMethod::Map;
 }
 
-bool shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& middle, float radius) {
-    // The shadow of the box lies behind it as seen from the light: test whether the segment from
+bool shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& center, float radius) {
+    // The shadow of the box lies behind it as viewed from the light: test whether the segment from
     // the sphere's center to the light hits the box, enlarged by the radius.
     const Vec3 low = box.min - Vec3(radius);
     const Vec3 high = box.max + Vec3(radius);
-    const Vec3 to_light = Vec3(light) - middle * light.w;
+    const Vec3 to_light = Vec3(light) - center * light.w;
     float enter = 0;
     float leave = light.w > 0 ? 1.0f : INFINITY;
     for (int i = 0; i < 3; ++i) {
         if (std::abs(to_light[i]) < 1e-20f) {
-            if (middle[i] < low[i] || middle[i] > high[i]) {
+            if (center[i] < low[i] || center[i] > high[i]) {
                 return false;
             }
             continue;
         }
-        const float a = (low[i] - middle[i]) / to_light[i];
-        const float b = (high[i] - middle[i]) / to_light[i];
+        const float a = (low[i] - center[i]) / to_light[i];
+        const float b = (high[i] - center[i]) / to_light[i];
         enter = std::max(enter, std::min(a, b));
         leave = std::min(leave, std::max(a, b));
     }
@@ -133,7 +133,7 @@ void VolumeCollector::collect(
     }
     find_casters(items, view);
 
-    // Layers in the order of the records. Lights without a visible range or without casters need
+    // Layers in the order of the records; lights whose range is off screen or without casters need
     // none.
     std::vector<std::size_t> taken;
     std::vector<std::uint32_t> layer_of(candidates_.size(), ~0u);
@@ -145,7 +145,7 @@ void VolumeCollector::collect(
         Candidate& candidate = candidates_[i];
         ShadowedLight& light = lights.shadowed[candidate.shadowed];
         const bool hybrid = light.settings.method == ShadowMethod::Hybrid;
-        const RangeSphere sphere = range_sphere(candidate.reach);
+        const RangeSphere sphere = range_sphere(candidate.range);
         const LightBounds bounds = light_bounds(view, sphere.center, sphere.radius);
         const bool needed = shades[i] && !is_empty(bounds);
         if (candidate.served && needed
@@ -166,7 +166,7 @@ void VolumeCollector::collect(
             added.hybrid = hybrid;
             added.bounds = bounds;
             added.block = ring.push_value(
-                make_block(candidate.settings, candidate.light, candidate.reach.radius));
+                make_block(candidate.settings, candidate.light, candidate.range.radius));
         }
         if (hybrid && needed) {
             light.settings.method = ShadowMethod::Map;
@@ -199,7 +199,8 @@ void VolumeCollector::assign_hybrid_masks(LightList& lights, VolumeList& list) {
         }
         Vec4& shadow = lights.records[light.record].shadow;
         light.map = shadow;
-        light.hybrid = shadow.y != layout::kShadowNone;  // no room for its map: volumes only
+        light.hybrid =
+            shadow.y != layout::kShadowNone;  // its map does not fit into the atlas: volumes only
         shadow = {static_cast<float>(i), layout::kShadowMask, 1, 0};
         lights.shadows = true;
     }
@@ -221,7 +222,7 @@ void VolumeCollector::find_candidates(const World& world, const LightList& light
             candidate.settings = *settings;
         }
         candidate.light = homogeneous(light);
-        candidate.reach = volume_range(light);
+        candidate.range = volume_range(light);
     }
 }
 
@@ -245,7 +246,7 @@ void VolumeCollector::add_item(
     const DrawState state = draw_state(block.keys[i]);
     const Bounds box = block.box(i);
     for (Candidate& candidate : candidates_) {
-        if (!candidate.served || !reaches_box(candidate.reach, box)) {
+        if (!candidate.served || !reaches_box(candidate.range, box)) {
             continue;
         }
         if (state.inflated || state.deformed) {

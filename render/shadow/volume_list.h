@@ -17,10 +17,10 @@ namespace limn {
 
 // Which lights use stencil shadow volumes in this frame, and the draws that count them. A light
 // with the method volume or hybrid gets a layer of the shadow mask. It gets a shadow map instead,
-// logged once, if kMaxVolumeLights others come before it or if a caster in its range cannot have a
+// logged once, if kMaxVolumeLights others precede it or if a caster in its range cannot have a
 // volume: a mesh that is not closed or is deformed, or a material with holes (shadow.selection).
 // Only casters within the light's range are considered (shadow.caster-cull); of these, casters
-// whose volume lies off screen are skipped, but not casters that are themselves off screen.
+// whose volume is off screen are skipped, but not casters that are themselves off screen.
 //
 // Closed casters whose volume cannot contain the eye are counted by z-pass, where an infinite
 // volume needs no caps; the others by z-fail.
@@ -67,7 +67,7 @@ struct VolumeList {
 
 /// Whether the shadow of a caster in `box` may contain a point of the sphere; conservative.
 [[nodiscard]] bool
-shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& middle, float radius);
+shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& center, float radius);
 
 /// Whether the caster and its shadow lie wholly outside the frustum; conservative.
 [[nodiscard]] bool shadow_is_outside(const Bounds& box, const Vec4& light, const Frustum& frustum);
@@ -91,7 +91,7 @@ class VolumeCollector {
         std::size_t shadowed = 0;  ///< index into LightList::shadowed
         ShadowVolume settings;
         Vec4 light;  ///< homogeneous
-        LightRange reach;
+        LightRange range;
         bool served = true;
     };
     struct Caster {

@@ -100,9 +100,9 @@ window_of(const layout::WaterRecord& body, const Caustics& caustics, const Vec3&
         } else {
             // Snapped, so that it does not swim when the camera moves.
             const float step = caustics.window / static_cast<float>(side) * 8;
-            const float middle = std::floor((axis == 0 ? at.x : at.z) / step) * step;
+            const float center = std::floor((axis == 0 ? at.x : at.z) / step) * step;
             window.size[axis] = caustics.window;
-            window.corner[axis] = middle - 0.5f * caustics.window;
+            window.corner[axis] = center - 0.5f * caustics.window;
             window.rim = std::min(window.rim, kUnboundedRim * caustics.window);
         }
     }
@@ -156,8 +156,8 @@ ShadowView make_water_view(
     local_from_world[3] = Vec4(frame.local(Vec3(0)), 1);
     ShadowView view;
     view.clip_from_world = glm::transpose(rows) * local_from_world;
-    const Vec2 middle = window.corner + 0.5f * window.size;
-    view.eye = frame.world({middle.x, 0, middle.y});
+    const Vec2 center = window.corner + 0.5f * window.size;
+    view.eye = frame.world({center.x, 0, center.y});
     view.resolution = resolution;
     return view;
 }
@@ -183,23 +183,24 @@ struct Source {
 /// Map index within its water: cascades below the surface, or kAbove.
 constexpr int kAbove = kMaxCausticCascades;
 
-/// Appends a map, its place and its view.
+/// Appends a map, its tile of the atlas and its shadow view.
 void add_map(
     const Source& source, int part, const Window& window, const Vec2& slant, float depth_range,
     bool make, CausticList& list, std::vector<WaterShadow>& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const bool above = part == kAbove;
     const int side = above ? source.caustics.mirror_resolution : source.caustics.resolution;
-    const float share = fresnel(source.to_sun.y, body.shape.w);
+    const float reflectance = fresnel(source.to_sun.y, body.shape.w);
     const Vec2 heights = source.waters.heights[source.body];
-    list.places.push_back(
+    list.tiles.push_back(
         {.window = Vec4(window.corner, 1.0f / window.size),
          .rect = {0, 0, static_cast<float>(side), make ? 1.0f : 0.0f},
          .view = {-1, window.rim / std::max(window.size.x, window.size.y), depth_range, 0}});
     list.maps.push_back(
         {.window = Vec4(window.corner, window.size),
          .to_sun = Vec4(source.to_sun, static_cast<float>(source.body)),
-         .bent = Vec4(slant, depth_range, (above ? share : 1 - share) * source.to_sun.y),
+         .bent =
+             Vec4(slant, depth_range, (above ? reflectance : 1 - reflectance) * source.to_sun.y),
          .shadows = Vec4(0),
          .world = Vec4(Vec3(source.light.position), -1),
          .grid =
@@ -209,7 +210,7 @@ void add_map(
          .pool =
              {body.shape.y > 0 ? body.shape.y : 1e6f, body.shape.z > 0 ? body.shape.z : 1e6f,
               heights.x, 1 / std::max(heights.y - heights.x, 1e-4f)},
-         .place = {0, 0, 0, source.caustics.strength}});
+         .target = {0, 0, 0, source.caustics.strength}});
     shadows.push_back(
         {source.waters.entities[source.body], static_cast<std::uint64_t>(part),
          make_water_view(frame_of(body), window, slant, above ? -depth_range : depth_range, side)});
@@ -227,8 +228,8 @@ void add_below(
     const bool unbounded = body.shape.y <= 0 || body.shape.z <= 0;
     const int count = unbounded ? caustics.cascades : 1;
     sunken.maps = {
-        static_cast<float>(list.places.size()), static_cast<float>(count),
-        static_cast<float>(light), 0.999f * depth};
+        static_cast<float>(list.tiles.size()), static_cast<float>(count), static_cast<float>(light),
+        0.999f * depth};
     sunken.bent = Vec4(slant, caustics.strength, static_cast<float>(caustics.shaft_steps));
     Caustics ring = caustics;
     for (int i = 0; i < count; ++i) {
@@ -249,16 +250,16 @@ void add_above(
     list.mirrors.push_back(
         {.origin = body.origin,
          .shape =
-             {body.shape.x, static_cast<float>(list.places.size()), static_cast<float>(light),
+             {body.shape.x, static_cast<float>(list.tiles.size()), static_cast<float>(light),
               0.999f * caustics.mirror_reach},
          .bent = Vec4(slant, fresnel(source.to_sun.y, body.shape.w), 0)});
     const Window window = mirror_window(body, caustics, camera, slant, cells);
     add_map(source, kAbove, window, slant, caustics.mirror_reach, true, list, shadows);
 }
 
-/// Assigns every map its square of the atlas: largest first, along a Z-order curve, so that no
-/// space is wasted between them.
-void place_maps(CausticList& list) {
+/// Packs the maps into the atlas: largest first, along a Z-order curve, so that no space is wasted
+/// between them.
+void pack_caustic_atlas(CausticList& list) {
     std::vector<std::size_t> order(list.maps.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -274,8 +275,8 @@ void place_maps(CausticList& list) {
             at.y |= static_cast<int>(texels >> (2 * bit + 1) & 1) << bit;
         }
         texels += static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
-        map.place.x = list.places[i].rect.x = static_cast<float>(at.x);
-        map.place.y = list.places[i].rect.y = static_cast<float>(at.y);
+        map.target.x = list.tiles[i].rect.x = static_cast<float>(at.x);
+        map.target.y = list.tiles[i].rect.y = static_cast<float>(at.y);
         list.atlas = glm::max(list.atlas, at + side);
     }
 }
@@ -296,7 +297,7 @@ void list_rays(CausticList& list) {
     list.rays = 0;
     for (std::size_t i = 0; i < list.maps.size(); ++i) {
         const auto points = static_cast<std::size_t>(list.maps[i].grid.x) + 1;
-        list.maps[i].place.z = static_cast<float>(list.rays);
+        list.maps[i].target.z = static_cast<float>(list.rays);
         for (std::size_t first = 0; first < points * points; first += layout::kRayGroup) {
             list.jobs.emplace_back(static_cast<float>(i), static_cast<float>(first), 0, 0);
         }
@@ -337,12 +338,12 @@ bool may_be_visible(const layout::WaterRecord& body, const Frustum& frustum) {
     }
     const WaterFrame frame = frame_of(body);
     const Vec3 half(body.shape.y, 0.5f * body.absorption.w + kBelowBottom, body.shape.z);
-    const Vec3 middle = frame.world({0, -0.5f * body.absorption.w, 0});
+    const Vec3 center = frame.world({0, -0.5f * body.absorption.w, 0});
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
             const Vec3 normal = frame.direction_to_local(Vec3(plane));
-            const float reach = glm::dot(glm::abs(normal), half);
-            return glm::dot(Vec3(plane), middle) + plane.w < -reach;
+            const float radius = glm::dot(glm::abs(normal), half);
+            return glm::dot(Vec3(plane), center) + plane.w < -radius;
         });
 }
 
@@ -391,15 +392,15 @@ void append_grid(CausticList& list) {
     std::vector<std::array<Vec2, 2>> boxes;
     std::size_t bounded = 0;
     for (const layout::UnderwaterRecord& sunken : list.sunken) {
-        const Vec2 middle(finite_or(sunken.origin.x, 0), finite_or(sunken.origin.z, 0));
+        const Vec2 center(finite_or(sunken.origin.x, 0), finite_or(sunken.origin.z, 0));
         const Vec2 axis = glm::abs(Vec2(sunken.origin.w, sunken.shape.x));
         const Vec2 half(sunken.shape.y, sunken.shape.z);
-        const Vec2 reach =
+        const Vec2 extent =
             half.x > 0 && half.y > 0
                 ? Vec2(axis.x * half.x + axis.y * half.y, axis.y * half.x + axis.x * half.y) + 0.01f
                 : Vec2(1e9f);
-        boxes.push_back({middle - reach, middle + reach});
-        if (reach.x < 1e9f) {
+        boxes.push_back({center - extent, center + extent});
+        if (extent.x < 1e9f) {
             low = glm::min(low, boxes.back()[0]);
             high = glm::max(high, boxes.back()[1]);
             ++bounded;
@@ -410,8 +411,8 @@ void append_grid(CausticList& list) {
             ? 1
             : std::min(kMaxGridSide, static_cast<int>(2 * std::sqrt(static_cast<float>(bounded))));
     const Vec2 origin = bounded > 0 ? low : Vec2(0);
-    const Vec2 extent = bounded > 0 ? glm::max(high - low, Vec2(1e-3f)) : Vec2(1);
-    const Vec2 per_meter = static_cast<float>(side) / extent;
+    const Vec2 size = bounded > 0 ? glm::max(high - low, Vec2(1e-3f)) : Vec2(1);
+    const Vec2 per_meter = static_cast<float>(side) / size;
     const std::size_t first = list.texels.size();
     list.texels[0].w = static_cast<float>(first);
     list.texels[1] = Vec4(origin, per_meter);
@@ -452,7 +453,7 @@ void collect_caustics(
     const Vec3 camera(pose[0].w, pose[1].w, pose[2].w);
     list.sunken.clear();
     list.mirrors.clear();
-    list.places.clear();
+    list.tiles.clear();
     list.maps.clear();
     list.atlas = {0, 0};
     shadows.clear();
@@ -482,15 +483,15 @@ void collect_caustics(
         }
     }
     if (maps) {
-        place_maps(list);
+        pack_caustic_atlas(list);
     }
 }
 
-void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list) {
+void finish_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list) {
     const int sun = brightest_sun(lights);
     for (std::size_t i = 0; i < list.maps.size(); ++i) {
         list.maps[i].shadows = lights.records[static_cast<std::size_t>(sun)].shadow;
-        list.maps[i].world.w = list.places[i].view.x = static_cast<float>(shadows.waters[i].record);
+        list.maps[i].world.w = list.tiles[i].view.x = static_cast<float>(shadows.waters[i].record);
     }
     list_rays(list);
     std::reverse(list.sunken.begin(), list.sunken.end());  // where they overlap, the last wins
@@ -498,13 +499,13 @@ void place_caustics(const LightList& lights, const ShadowList& shadows, CausticL
     const layout::WaterLightHeader head = {
         .counts =
             {static_cast<float>(list.sunken.size()), static_cast<float>(list.mirrors.size()),
-             static_cast<float>(list.places.size()), 0},
+             static_cast<float>(list.tiles.size()), 0},
         .grid = Vec4(0),
         .cells = Vec4(0)};
     append(list.texels, std::vector{head});
     append(list.texels, list.sunken);
     append(list.texels, list.mirrors);
-    append(list.texels, list.places);
+    append(list.texels, list.tiles);
     append_grid(list);
 }
 

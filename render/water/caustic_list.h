@@ -10,13 +10,13 @@
 
 namespace limn {
 
-// The waters of a frame, for lighting what is submerged in them, and the maps of their caustics.
+// The waters of a frame, for lighting submerged surfaces, and the maps of their caustics.
 //
 // A map is parameterized along light refracted by flat water: a point at depth d below the surface
 // at rest maps to where its ray entered, xz - bent d, in the water's own space. So all points of a
 // ray share a texel, walls are covered like floors, and under flat water the map is 1 everywhere. A
-// shadow view with the same parameterization holds the depth of the ground and what blocks the
-// light.
+// shadow view with the same parameterization holds the depth of the ground and of what blocks
+// the light.
 //
 // Reflected light is the same upside down: a point at height h maps to where its ray left the
 // water, xz - bent h. There the map is 1 above flat water and 0 outside.
@@ -33,13 +33,13 @@ inline constexpr std::int64_t kMaxCausticTexels = 1 << 20;
 struct CausticList {
     std::vector<layout::UnderwaterRecord> sunken;  ///< sorted, nearest to the camera last
     std::vector<layout::MirrorRecord> mirrors;
-    std::vector<layout::CausticPlace> places;
-    std::vector<layout::CausticRecord> maps;  ///< to be rendered, map i for places[i]
+    std::vector<layout::CausticTile> tiles;
+    std::vector<layout::CausticRecord> maps;  ///< to be rendered, map i for tiles[i]
     IVec2 atlas = {0, 0};                     ///< [texels]
     std::size_t rays = 0;                     ///< total of all maps
     int groups = 0;                           ///< work groups of rays
     std::vector<Vec4> jobs;                   ///< groups and `maps`, for lib/caustic_record.glsl
-    std::vector<Vec4> texels;                 ///< all records, for lib/caustic_place.glsl
+    std::vector<Vec4> texels;                 ///< all records, for lib/caustic_tile.glsl
     BufferTexture job_texture = BufferTexture("caustics", GL_RGBA32F);
     BufferTexture record_texture = BufferTexture("water lights", GL_RGBA32F);
 };
@@ -51,8 +51,8 @@ void collect_caustics(
     const WaterList& waters, const LightList& lights, const RenderView& view, bool maps,
     CausticList& list, std::vector<WaterShadow>& shadows);
 
-/// Call once the shadow views have their places.
-void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list);
+/// Completes the records; call once the shadow views are in their atlas.
+void finish_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list);
 
 /// Horizontal displacement (x, z) per meter of depth of light from `to_sun` (unit, in the water's
 /// own space), refracted by flat water of refractive `index`.

@@ -175,7 +175,7 @@ void splat_caustics(
         for (std::size_t i = begin; i < end; ++i) {
             const layout::CausticRecord& record = records[stripes[i].map];
             const auto points = static_cast<std::size_t>(record.grid.x) + 1;
-            const auto first = static_cast<std::size_t>(record.place.z);
+            const auto first = static_cast<std::size_t>(record.target.z);
             LIMN_CHECK(rays.size() >= first + points * points);
             const std::span own = rays.subspan(first, points * points);
             sum_stripe(record, own, stripes[i], sums.parts.data() + stripes[i].sums);
@@ -187,8 +187,8 @@ void splat_caustics(
             const layout::CausticRecord& record = records[stripe.map];
             const int side = side_of(record);
             const int cells = static_cast<int>(record.grid.x);
-            const auto x = static_cast<std::size_t>(record.place.x);
-            const auto y = static_cast<std::size_t>(record.place.y);
+            const auto x = static_cast<std::size_t>(record.target.x);
+            const auto y = static_cast<std::size_t>(record.target.y);
             const auto stride = static_cast<std::size_t>(width);
             for (int row = side * stripe.first / cells; row < side * stripe.last / cells; ++row) {
                 const std::size_t at = (y + static_cast<std::size_t>(row)) * stride + x;

@@ -99,14 +99,14 @@ void make_array(
 }
 
 /// shift_x, height, shift_z, interpolated from the previous step (0) to the last one (1).
-void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>& texels) {
+void fill_shift(const OceanCascade& c, int size, float weight, std::vector<Vec4>& texels) {
     const PlaneReader now[3] = {
         {c.shift_x, c.size, size}, {c.height, c.size, size}, {c.shift_z, c.size, size}};
     const PlaneReader last[3] = {
         {c.previous_shift_x, c.size, size},
         {c.previous_height, c.size, size},
         {c.previous_shift_z, c.size, size}};
-    if (share == 1.0f) {
+    if (weight == 1.0f) {
         fill(size, texels, [&](int x, int z) {
             return Vec4(now[0].at(x, z), now[1].at(x, z), now[2].at(x, z), 0);
         });
@@ -115,7 +115,7 @@ void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>&
     fill(size, texels, [&](int x, int z) {
         Vec4 texel(0);
         for (int i = 0; i < 3; ++i) {
-            texel[i] = glm::mix(last[i].at(x, z), now[i].at(x, z), share);
+            texel[i] = glm::mix(last[i].at(x, z), now[i].at(x, z), weight);
         }
         return texel;
     });
@@ -143,40 +143,40 @@ float slope_variance(const OceanCascade& c) {
 }  // namespace
 
 void OceanTextures::update(std::span<const OceanSource> seas, bool with_previous) {
-    places_.assign(seas.size(), {});
+    layers_.assign(seas.size(), {});
     size_ = 0;
-    layers_ = 0;
+    layer_count_ = 0;
     for (std::size_t i = 0; i < seas.size(); ++i) {
         if (seas[i].state == nullptr) {
             continue;
         }
-        places_[i].first_layer = layers_;
-        places_[i].patches = static_cast<int>(seas[i].state->cascades.size());
-        layers_ += places_[i].patches;
+        layers_[i].first_layer = layer_count_;
+        layers_[i].patches = static_cast<int>(seas[i].state->cascades.size());
+        layer_count_ += layers_[i].patches;
         for (const OceanCascade& cascade : seas[i].state->cascades) {
             size_ = std::max(size_, cascade.size);
         }
     }
-    if (layers_ == 0) {
+    if (layer_count_ == 0) {
         return;
     }
-    make_array(shift_, "ocean shift", GL_RGBA32F, size_, layers_, 0);
-    make_array(slope_, "ocean slope", GL_RGBA32F, size_, layers_, 0);
-    make_array(foam_, "ocean foam", GL_RG32F, size_, layers_, 0);
+    make_array(shift_, "ocean shift", GL_RGBA32F, size_, layer_count_, 0);
+    make_array(slope_, "ocean slope", GL_RGBA32F, size_, layer_count_, 0);
+    make_array(foam_, "ocean foam", GL_RG32F, size_, layer_count_, 0);
     if (with_previous) {
-        make_array(previous_shift_, "previous ocean shift", GL_RGBA32F, size_, layers_, 0);
+        make_array(previous_shift_, "previous ocean shift", GL_RGBA32F, size_, layer_count_, 0);
     }
     for (std::size_t i = 0; i < seas.size(); ++i) {
         const OceanSource& sea = seas[i];
-        for (int p = 0; p < places_[i].patches; ++p) {
+        for (int p = 0; p < layers_[i].patches; ++p) {
             const OceanCascade& c = sea.state->cascades[static_cast<std::size_t>(p)];
-            const int layer = places_[i].first_layer + p;
+            const int layer = layers_[i].first_layer + p;
             const float step = sea.state->step;
-            const auto share = [&](float seconds) { return step > 0 ? 1 + seconds / step : 1.0f; };
-            fill_shift(c, size_, share(sea.now), texels_);
+            const auto weight = [&](float seconds) { return step > 0 ? 1 + seconds / step : 1.0f; };
+            fill_shift(c, size_, weight(sea.now), texels_);
             upload_levels(shift_, size_, layer, GL_RGBA, texels_);
             if (with_previous) {
-                fill_shift(c, size_, share(sea.before), texels_);
+                fill_shift(c, size_, weight(sea.before), texels_);
                 upload_levels(previous_shift_, size_, layer, GL_RGBA, texels_);
             }
             const PlaneReader planes[5] = {
@@ -202,8 +202,8 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_previous
                 return Vec2(planes[4].at(x, z), cover != nullptr ? cover[at] : 0.0f);
             });
             upload_levels(foam_, size_, layer, GL_RG, pairs_);
-            places_[i].reach += wave_range(c);
-            places_[i].variance[p] = slope_variance(c);
+            layers_[i].margin += wave_range(c);
+            layers_[i].variance[p] = slope_variance(c);
         }
     }
 }

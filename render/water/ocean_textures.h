@@ -19,10 +19,11 @@ struct OceanSource {
     float now = 0;                    ///< time shown, relative to the state's time [s], <= 0
     float before = 0;                 ///< time of the previous frame, relative to the state [s]
 };
-struct OceanPlace {
+/// Layers of one sea.
+struct OceanLayers {
     int first_layer = 0;
     int patches = 0;          ///< 0: not in the textures
-    Vec3 reach = {0, 0, 0};   ///< maximum displacement of the surface [m]
+    Vec3 margin = {0, 0, 0};  ///< maximum displacement of the surface [m]
     Vec4 variance = Vec4(0);  ///< slope variance of each patch
 };
 
@@ -31,9 +32,9 @@ class OceanTextures {
     /// Packs and uploads all seas; `with_previous` also the previous frame.
     void update(std::span<const OceanSource> seas, bool with_previous);
 
-    [[nodiscard]] bool empty() const { return layers_ == 0; }
+    [[nodiscard]] bool empty() const { return layer_count_ == 0; }
     [[nodiscard]] int size() const { return size_; }  ///< points per side
-    [[nodiscard]] const std::vector<OceanPlace>& places() const { return places_; }
+    [[nodiscard]] const std::vector<OceanLayers>& layers() const { return layers_; }
     /// RGBA32F with mip levels: shift_x, height, shift_z, 0.
     [[nodiscard]] const gpu::Texture& shift() const { return shift_; }
     [[nodiscard]] const gpu::Texture& previous_shift() const {
@@ -46,8 +47,8 @@ class OceanTextures {
 
   private:
     int size_ = 0;
-    int layers_ = 0;
-    std::vector<OceanPlace> places_;
+    int layer_count_ = 0;
+    std::vector<OceanLayers> layers_;
     gpu::Texture shift_;
     gpu::Texture previous_shift_;
     gpu::Texture slope_;

@@ -53,7 +53,7 @@ int pack_shelves(std::span<const IVec2> sizes, int width, std::span<IVec2> corne
 }
 
 void RippleAtlas::update(std::span<const RippleState* const> states, int max_side) {
-    places_.assign(states.size(), {});
+    tiles_.assign(states.size(), {});
     std::vector<IVec2> sizes;
     int widest = 0;
     std::int64_t area = 0;
@@ -80,7 +80,7 @@ void RippleAtlas::update(std::span<const RippleState* const> states, int max_sid
     texels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     for (std::size_t i = 0; i < states.size(); ++i) {
         const bool fits = sizes[i].x > 0 && corners[i].y + sizes[i].y <= height;
-        places_[i] = {corners[i] + kBorder, fits};
+        tiles_[i] = {corners[i] + kBorder, fits};
         for (int row = 0; fits && row < sizes[i].y; ++row) {
             const auto first =
                 static_cast<std::size_t>(corners[i].y + row) * static_cast<std::size_t>(width)

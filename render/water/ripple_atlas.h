@@ -12,8 +12,8 @@ namespace limn {
 // a border texel that repeats the edge. A texel holds height [m], upward velocity [m/s] and the
 // slopes along x and z.
 
-/// Location of the cells of one body.
-struct AtlasPlace {
+/// The cells of one body in the atlas.
+struct RippleTile {
     IVec2 corner = {0, 0};  ///< of the first cell [texels]
     bool fits = false;      ///< false: not in the texture
 };
@@ -23,12 +23,12 @@ class RippleAtlas {
     /// Packs all bodies and uploads their texels. `max_side`: maximum texture size [px].
     void update(std::span<const RippleState* const> states, int max_side);
 
-    [[nodiscard]] const std::vector<AtlasPlace>& places() const { return places_; }
+    [[nodiscard]] const std::vector<RippleTile>& tiles() const { return tiles_; }
     /// Null before the first update; meaningless if no body has ripples.
     [[nodiscard]] const gpu::Texture& texture() const { return texture_; }
 
   private:
-    std::vector<AtlasPlace> places_;
+    std::vector<RippleTile> tiles_;
     std::vector<Vec4> texels_;
     gpu::Texture texture_;
 };

@@ -37,11 +37,11 @@ std::optional<NdcRect> ndc_rect(const RenderView& view, const Vec3& center, floa
     return NdcRect(low, low + Vec2(bounds.width, bounds.height) * pixel);
 }
 
-float view_distance(const RenderView& view, const Vec3& place) {
+float view_distance(const RenderView& view, const Vec3& position) {
     float distance = 0;
     for (int i = 0; i < 3; ++i) {  // the camera looks along -z
         const Vec4& row = view.world_from_camera.row[i];
-        distance -= row.z * (place[i] - row.w);
+        distance -= row.z * (position[i] - row.w);
     }
     return distance;
 }
@@ -53,8 +53,8 @@ void collect_rings(const World& world, const RenderView& view, float ago, Ripple
                   const PreviousWorldTransform* before) {
             RippleRing ring = last;
             ring.age -= ago;
-            const Affine place = world_at(jumps, entity, now, before, {view.alpha, view.alpha});
-            const Vec3 center = {place.row[0].w, place.row[1].w, place.row[2].w};
+            const Affine pose = world_at(jumps, entity, now, before, {view.alpha, view.alpha});
+            const Vec3 center = {pose.row[0].w, pose.row[1].w, pose.row[2].w};
             const float radius = ring.start_radius + ring.speed * ring.age;
             const float amplitude = ring.amplitude * ripple_fade(ring);
             if (amplitude == 0 || !(ring.wavelength > 0)) {
@@ -73,22 +73,22 @@ void collect_hazes(const World& world, const RenderView& view, double time, Ripp
     world.query<const HeatHaze, const WorldTransform, Optional<const PreviousWorldTransform>>()
         .each([&](Entity entity, const HeatHaze& haze, const WorldTransform& now,
                   const PreviousWorldTransform* before) {
-            const Mat4 place =
+            const Mat4 pose =
                 to_mat4(world_at(jumps, entity, now, before, {view.alpha, view.alpha}));
-            // The box lies within the sphere about its farthest corner.
-            float reach = 0;
+            // The box is within the sphere through its farthest corner.
+            float radius = 0;
             for (int corner = 0; corner < 4; ++corner) {
                 const Vec4 local(corner % 2 == 0 ? -1 : 1, corner / 2 == 0 ? -1 : 1, 1, 0);
-                reach = std::max(reach, glm::length(Vec3(place * local)));
+                radius = std::max(radius, glm::length(Vec3(pose * local)));
             }
-            const bool flat = !(std::abs(glm::determinant(place)) > 1e-12f);
+            const bool flat = !(std::abs(glm::determinant(pose)) > 1e-12f);
             if (haze.strength <= 0 || flat || !(haze.scale > 0)) {
                 return;
             }
             const double raised = haze.rise * time / haze.scale;
-            if (const auto rect = ndc_rect(view, Vec3(place[3]), reach)) {
+            if (const auto rect = ndc_rect(view, Vec3(pose[3]), radius)) {
                 list.hazes.push_back(
-                    {*rect, view_distance(view, Vec3(place[3])), glm::inverse(place), haze.shape,
+                    {*rect, view_distance(view, Vec3(pose[3])), glm::inverse(pose), haze.shape,
                      haze.strength * static_cast<float>(view.height), haze.scale,
                      static_cast<float>(raised), haze.seed});
             }

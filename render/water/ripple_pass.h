@@ -13,7 +13,7 @@ namespace limn {
 // Every ripple adds to a field of offsets [px]; one pass then reads the radiance at the offset
 // positions. Surfaces in front of a ripple are neither distorted nor sampled: of the four bilinear
 // texels those in front are rejected, and where none is left the pixel is unchanged. So the
-// foreground neither ripples nor leaks into what does, bit-exactly.
+// foreground neither ripples nor leaks into the rippled background, bit-exactly.
 //
 //     ring   rays turn away from the shell's center by a sin(2 pi s) (1 - s^2)^2, s = (b - r) / l,
 //            b the ray's minimum distance to the center; times the fraction of the distance to

@@ -20,9 +20,9 @@ float length_of(const WaveLine& line) {
 /// Scroll offset of a layer, in tiles.
 Vec2 moved(const DetailLayer& layer, double time) {
     const double copies = time * static_cast<double>(layer.speed / layer.tile);
-    const auto along = [&](double share) {
-        const double place = copies * share;
-        return static_cast<float>(place - std::floor(place));
+    const auto along = [&](double fraction) {
+        const double offset = copies * fraction;
+        return static_cast<float>(offset - std::floor(offset));
     };
     const auto direction = static_cast<double>(layer.direction);
     return {along(std::cos(direction)), along(std::sin(direction))};

@@ -13,11 +13,11 @@ namespace limn {
 
 namespace {
 
-constexpr float kRippleReach = 0.5f;     ///< maximum ripple height [m]; higher ones may be culled
-constexpr float kCellsPerWave = 16.0f;   ///< of the finest grid, for the shortest wave
-constexpr float kMinPatchSide = 0.125f;  ///< side of a patch [m]
-constexpr float kCellPixels = 28.0f;     ///< maximum size of a patch cell on screen [px]
-constexpr float kMaxDetail = 12.0f;      ///< for very large images
+constexpr float kMaxRippleHeight = 0.5f;  ///< [m]; higher ripples may be culled
+constexpr float kCellsPerWave = 16.0f;    ///< of the finest grid, for the shortest wave
+constexpr float kMinPatchSide = 0.125f;   ///< side of a patch [m]
+constexpr float kCellPixels = 28.0f;      ///< maximum size of a patch cell on screen [px]
+constexpr float kMaxDetail = 12.0f;       ///< for very large images
 
 /// Appends the first `lines` of the table, and its rings.
 void add_waves(const WaveTable& table, std::size_t lines, const WaterSources& at, WaterList& list) {
@@ -31,7 +31,7 @@ void add_waves(const WaveTable& table, std::size_t lines, const WaterSources& at
     for (const WaveRing& ring : table.rings) {
         const float front = ring.front_speed * at.now;
         list.rings.push_back(
-            {.place = {ring.center.x, ring.center.y, ring.first + front, ring.last + front},
+            {.circle = {ring.center.x, ring.center.y, ring.first + front, ring.last + front},
              .phase =
                  {ring.phase + ring.frequency * at.now, ring.phase + ring.frequency * at.previous,
                   ring.k, ring.amplitude},
@@ -42,17 +42,17 @@ void add_waves(const WaveTable& table, std::size_t lines, const WaterSources& at
 }
 
 /// Maximum displacement of the surface by waves, vertical and horizontal [m].
-Vec3 reach_of(const WaveTable* table) {
-    Vec3 reach(0);
+Vec3 margin_of(const WaveTable* table) {
+    Vec3 margin(0);
     if (table != nullptr) {
         for (const WaveLine& line : table->lines) {
-            reach += Vec3(std::abs(line.side.x), line.amplitude, std::abs(line.side.y));
+            margin += Vec3(std::abs(line.side.x), line.amplitude, std::abs(line.side.y));
         }
         for (const WaveRing& ring : table->rings) {
-            reach.y += ring.amplitude;
+            margin.y += ring.amplitude;
         }
     }
-    return reach;
+    return margin;
 }
 
 /// Side of the smallest patch needed to resolve all waves; `lines` of the table move vertices.
@@ -96,39 +96,39 @@ Mat4 matrix_of(const WaterFrame& frame) {
     return m;
 }
 
-void place_ripples(
+void set_ripples(
     const RippleAtlas& atlas, std::span<const RippleState* const> ripples, WaterList& list) {
     for (std::size_t i = 0; i < list.bodies.size(); ++i) {
-        const AtlasPlace& place = atlas.places()[i];
-        if (!place.fits) {
+        const RippleTile& tile = atlas.tiles()[i];
+        if (!tile.fits) {
             continue;
         }
         const RippleState& state = *ripples[i];
         const Vec2 sheet(atlas.texture().width(), atlas.texture().height());
         const Vec2 scale = 1.0f / (state.cell * sheet);
-        const Vec2 middle = (Vec2(place.corner) + 0.5f * Vec2(state.cells)) / sheet;
-        list.bodies[i].ripples = Vec4(scale, middle);
+        const Vec2 center = (Vec2(tile.corner) + 0.5f * Vec2(state.cells)) / sheet;
+        list.bodies[i].ripples = Vec4(scale, center);
         const Vec2 half = 0.5f * state.size();
         list.bodies[i].rippling.x = half.x;
         list.bodies[i].rippling.y = half.y;
     }
 }
 
-void place_sea(
-    const OceanTextures& textures, const OceanSource& sea, const OceanPlace& place,
+void set_sea(
+    const OceanTextures& textures, const OceanSource& sea, const OceanLayers& layers,
     layout::WaterRecord& body) {
     body.ocean = {
-        static_cast<float>(place.first_layer), static_cast<float>(place.patches),
+        static_cast<float>(layers.first_layer), static_cast<float>(layers.patches),
         static_cast<float>(textures.size()), body.ocean.w};
-    for (int i = 0; i < place.patches; ++i) {
+    for (int i = 0; i < layers.patches; ++i) {
         body.patches[i] = 1.0f / sea.state->cascades[static_cast<std::size_t>(i)].patch;
     }
-    body.variance = place.variance;
+    body.variance = layers.variance;
 }
 
-/// Minimum and maximum height: `reach` of the other waves plus the ripples of this body.
-Vec2 heights_of(float reach, const RippleState* ripples) {
-    Vec2 heights(-reach, reach);
+/// Minimum and maximum height: +-`wave_height` of the other waves plus the ripples of this body.
+Vec2 heights_of(float wave_height, const RippleState* ripples) {
+    Vec2 heights(-wave_height, wave_height);
     if (ripples != nullptr && !ripples->height.empty()) {
         const auto [lowest, highest] =
             std::minmax_element(ripples->height.begin(), ripples->height.end());
@@ -140,17 +140,17 @@ Vec2 heights_of(float reach, const RippleState* ripples) {
 /// Set if the camera is, or may be, in this water.
 std::optional<WaterAroundView> find_around(const PatchSource& source, float depth, float near) {
     const Vec3& eye = source.camera;
-    const float reach = source.margin.y + 2 * near;
+    const float margin = source.margin.y + 2 * near;
     const bool beside = (source.half.x > 0 && std::abs(eye.x) > source.half.x)
                         || (source.half.y > 0 && std::abs(eye.z) > source.half.y);
-    if (beside || !(eye.y < reach) || (depth > 0 && eye.y < -depth)) {
+    if (beside || !(eye.y < margin) || (depth > 0 && eye.y < -depth)) {
         return std::nullopt;
     }
-    return WaterAroundView{static_cast<int>(source.body), eye.y > -reach};
+    return WaterAroundView{static_cast<int>(source.body), eye.y > -margin};
 }
 
 void add_body(
-    const WaterSources& at, std::size_t index, const WaterLook& look, const Vec3& reach,
+    const WaterSources& at, std::size_t index, const WaterLook& look, const Vec3& margin,
     const RenderView& view, WaterList& list) {
     const WaterSources::Body& body = at.bodies[index];
     const RippleState* const ripples = at.ripples[index];
@@ -163,8 +163,8 @@ void add_body(
     PatchSource source;
     source.half = 0.5f * water.size;
     source.camera = body.frame.local({pose.row[0].w, pose.row[1].w, pose.row[2].w});
-    source.margin = reach + reach_of(body.table);
-    source.margin.y += ripples != nullptr ? kRippleReach : 0.0f;
+    source.margin = margin + margin_of(body.table);
+    source.margin.y += ripples != nullptr ? kMaxRippleHeight : 0.0f;
     source.frustum = make_frustum(view.clip_from_world * matrix_of(body.frame));
     source.finest = finest_of(body.table, lines, ripples, sea);
     source.detail = detail_of(view);
@@ -176,13 +176,13 @@ void add_body(
             std::span(body.table->lines).first(lines),
             std::span(list.patches).subspan(first_patch));
     }
-    list.seen_from_below |= !(source.camera.y > source.margin.y);
+    list.visible_from_below |= !(source.camera.y > source.margin.y);
     if (!list.around) {
         list.around = find_around(source, body.water->depth, view.near);
     }
     const bool by_height = body.caustics != nullptr && body.caustics->method == CausticMethod::Pool;
     list.heights.push_back(
-        by_height ? heights_of(reach.y + reach_of(body.table).y, ripples) : Vec2(0));
+        by_height ? heights_of(margin.y + margin_of(body.table).y, ripples) : Vec2(0));
 
     list.looks = list.looks || pack_look(look) != 0;
     list.planar = list.planar || look.reflection == WaterReflection::Planar;
@@ -258,18 +258,18 @@ void read_water_sources(const World& world, const RenderView& view, WaterSources
             const Water, const WorldTransform, Optional<const WaterLook>,
             Optional<const WaterDetail>, Optional<const WaveTable>, Optional<const RippleState>,
             Optional<const OceanState>, Optional<const OceanFoam>, Optional<const Caustics>>()
-        .each([&](Entity entity, const Water& water, const WorldTransform& place,
+        .each([&](Entity entity, const Water& water, const WorldTransform& pose,
                   const WaterLook* look, const WaterDetail* detail, const WaveTable* table,
                   const RippleState* rippling, const OceanState* sea, const OceanFoam* foam,
                   const Caustics* caustics) {
             sources.bodies.push_back(
-                {entity, &water, look, detail, table, caustics, water_frame(place.world)});
+                {entity, &water, look, detail, table, caustics, water_frame(pose.world)});
             sources.ripples.push_back(rippling);
             sources.seas.push_back({sea, foam, sources.now, sources.previous});
         });
 }
 
-void place_waters(
+void build_water_list(
     const WaterSources& sources, const RenderView& view, Entity planar, const RippleAtlas& ripples,
     const OceanTextures& seas, WaterList& list) {
     list.bodies.clear();
@@ -277,7 +277,7 @@ void place_waters(
     list.rings.clear();
     list.patches.clear();
     list.around.reset();
-    list.seen_from_below = false;
+    list.visible_from_below = false;
     list.entities.clear();
     list.caustics.clear();
     list.heights.clear();
@@ -293,13 +293,13 @@ void place_waters(
             list.floor = body.look;
         }
         const WaterLook look = available_look(*body.water, body.look, body.entity == planar);
-        add_body(sources, i, look, seas.places()[i].reach, view, list);
-        if (seas.places()[i].patches > 0) {
-            place_sea(seas, sources.seas[i], seas.places()[i], list.bodies[i]);
+        add_body(sources, i, look, seas.layers()[i].margin, view, list);
+        if (seas.layers()[i].patches > 0) {
+            set_sea(seas, sources.seas[i], seas.layers()[i], list.bodies[i]);
         }
     }
     if (!sources.bodies.empty()) {
-        place_ripples(ripples, sources.ripples, list);
+        set_ripples(ripples, sources.ripples, list);
     }
     move_flat_back(list);
 }

@@ -18,7 +18,7 @@
 
 namespace limn {
 
-// All bodies of water at the time that a view shows, ready to be drawn.
+// All bodies of water at the time that a view shows, ready to draw.
 
 /// The water that the camera is in, or may be in because of waves.
 struct WaterAroundView {
@@ -59,7 +59,7 @@ struct WaterList {
     std::vector<WaterPatch> flat_patches;  ///< for sorting them
     std::size_t first_flat_patch = 0;
     std::optional<WaterAroundView> around{};  ///< the first found
-    bool seen_from_below = false;  ///< for some surface the camera may be below its waves
+    bool visible_from_below = false;          ///< the camera may be below the waves of some surface
     std::vector<Entity> entities;
     std::vector<const Caustics*> caustics;  ///< per body, or null
     std::vector<Vec2> heights;              ///< per body: minimum and maximum wave height [m]
@@ -73,9 +73,9 @@ struct WaterList {
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };
 
-/// Everything at the time that `view` shows; reuses the memory of `list`. `planar` is the body with
-/// the planar reflection. `seas` holds what read_water_sources() uploaded.
-void place_waters(
+/// Builds the list at the time that `view` shows; reuses the memory of `list`. `planar` is the body
+/// with the planar reflection. `seas` holds what read_water_sources() uploaded.
+void build_water_list(
     const WaterSources& sources, const RenderView& view, Entity planar, const RippleAtlas& ripples,
     const OceanTextures& seas, WaterList& list);
 

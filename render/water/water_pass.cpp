@@ -54,18 +54,18 @@ std::array<std::uint16_t, kIndices> grid_indices() {
     return indices;
 }
 
-/// The same square where it is flat: triangles around its middle, with all vertices of its border,
+/// The same square where it is flat: triangles around its center, with all vertices of its border,
 /// so that it fits its neighbors.
 std::array<std::uint16_t, kFanIndices> fan_indices() {
     std::array<std::uint16_t, kFanIndices> indices{};
-    constexpr int kMiddle = kCells / 2 * kSide + kCells / 2;
+    constexpr int kCenter = kCells / 2 * kSide + kCells / 2;
     const int corners[4] = {0, kCells, kSide * kSide - 1, kCells * kSide};
     const int steps[4] = {1, kSide, -1, -kSide};
     std::size_t next = 0;
     for (int side = 0; side < 4; ++side) {
         for (int i = 0; i < kCells; ++i) {
             const int from = corners[side] + i * steps[side];
-            for (const int vertex : {kMiddle, from + steps[side], from}) {
+            for (const int vertex : {kCenter, from + steps[side], from}) {
                 indices[next++] = static_cast<std::uint16_t>(vertex);
             }
         }
@@ -100,7 +100,7 @@ Variant light_variant(const ViewData& view, const WaterSurfaces& waters) {
     variant.add_if(waters.any_seas(), "OCEAN");
     variant.add_if(list.looks, "LOOKS");
     variant.add_if(list.planar, "PLANAR");
-    variant.add_if(list.seen_from_below, "FROM_BELOW");
+    variant.add_if(list.visible_from_below, "FROM_BELOW");
     variant.add_if(!list.traced, "NO_SCREEN_REFLECTION");
     variant.add_if(list.details.needed, "DETAIL");
     variant.add_if(detail_map(*view.frame, waters) != nullptr, "DETAIL_MAP");
@@ -172,17 +172,17 @@ find_highest(FrameGraph& graph, const WaterEffect& effect, const ViewData& view,
     return columns;
 }
 
-/// What is seen of the surfaces, before it is lit: texels of lib/water_seen.glsl, and as a depth
+/// Visibility buffer of the surfaces: texels of lib/water_visibility.glsl, and a depth that marks
 /// the pixels that show water.
-struct SeenWater {
+struct VisibleWater {
     TextureId surfaces;
     TextureId pixels;
 };
 
-SeenWater draw_surfaces(
+VisibleWater draw_surfaces(
     FrameGraph& graph, WaterEffect& effect, const ViewData& view, const WaterSurfaces& waters) {
     const IVec2 size = view.size();
-    const SeenWater seen = {
+    const VisibleWater visible = {
         graph.create(
             {.name = "water surfaces",
              .format = GL_RGBA32UI,
@@ -192,8 +192,8 @@ SeenWater draw_surfaces(
              .target = GL_TEXTURE_2D_ARRAY}),
         create_target(graph, "water pixels", GL_DEPTH_COMPONENT32F, size)};
     std::vector<Use> writes = {
-        target_level(cleared(seen.surfaces), 0, 0), target_level(discarded(seen.surfaces), 0, 1),
-        view.gbuffer.depth};
+        target_level(cleared(visible.surfaces), 0, 0),
+        target_level(discarded(visible.surfaces), 0, 1), view.gbuffer.depth};
     if (view.velocity) {
         writes.emplace_back(view.gbuffer.velocity);
     }
@@ -226,9 +226,10 @@ SeenWater draw_surfaces(
     gpu::PipelineState state = gpu::kFullscreenState;
     state.depth = {.test = true, .write = true, .func = GL_ALWAYS};
     add_fullscreen_pass(
-        graph, "water pixels", {sampled(seen.surfaces, layout::kSeenWaterUnit)},
-        {discarded(seen.pixels)}, effect.pixels, state, [](PassContext&, const gpu::Program&) {});
-    return seen;
+        graph, "water pixels", {sampled(visible.surfaces, layout::kVisibleWaterUnit)},
+        {discarded(visible.pixels)}, effect.pixels, state,
+        [](PassContext&, const gpu::Program&) {});
+    return visible;
 }
 
 bool any_water(const FrameData& frame) {
@@ -279,10 +280,10 @@ void WaterEffect::add_warm_up_views(const FrameData& frame, std::vector<RenderVi
     constexpr float kBelow = -1;  // the surface of a sea [m]
     bool added[2] = {};
     frame.world->query<const Water, const WorldTransform, Optional<const WaterLook>>().each(
-        [&](const Water& water, const WorldTransform& place, const WaterLook* look) {
+        [&](const Water& water, const WorldTransform& pose, const WaterLook* look) {
             const bool planar = look != nullptr && look->reflection == WaterReflection::Planar;
             if (!std::exchange(added[planar ? 1 : 0], true)) {
-                const WaterFrame surface_frame = water_frame(place.world);
+                const WaterFrame surface_frame = water_frame(pose.world);
                 const float below = water.depth > 0 ? -0.5f * water.depth : kBelow;
                 views.push_back(view_of_water(frame, surface_frame, kAbove, false));
                 views.push_back(view_of_water(frame, surface_frame, below, true));
@@ -303,12 +304,12 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
         return;
     }
     const BehindWater behind = copy_behind(graph, view);
-    const SeenWater seen = draw_surfaces(graph, *this, view, *waters);
+    const VisibleWater visible = draw_surfaces(graph, *this, view, *waters);
     std::vector<Use> reads = lighting_reads(
         view, {sampled(behind.radiance, layout::kBehindWaterUnit),
                sampled(behind.depth, layout::kBehindWaterDepthUnit),
-               sampled(seen.surfaces, layout::kSeenWaterUnit), depth_tested(seen.pixels)});
-    if (waters->list.traced || waters->list.seen_from_below) {
+               sampled(visible.surfaces, layout::kVisibleWaterUnit), depth_tested(visible.pixels)});
+    if (waters->list.traced || waters->list.visible_from_below) {
         const TextureId surfaces = find_highest(graph, *this, view, behind.depth);
         reads.push_back(sampled(surfaces, layout::kHighestWaterUnit));
     }

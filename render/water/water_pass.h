@@ -7,9 +7,9 @@
 
 namespace limn {
 
-// Draws all bodies of water over the lit scene: what is seen of their surfaces with one draw call
-// for the patches that waves move and one for flat ones, then over the pixels that show them their
-// light.
+// Draws all bodies of water over the lit scene, deferred: their surfaces into a visibility buffer,
+// with one draw call for the patches that waves displace and one for flat ones, then the shading of
+// the visible pixels.
 //
 // Reads    WaterList, radiance, depth, light clusters, environment
 // Writes   radiance, depth, velocity and, if requested, surface attributes where there is water
@@ -17,10 +17,10 @@ namespace limn {
 // Shaders  water_behind.frag, water_highest.frag, water_columns.frag, water.vert,
 //          water_surface.frag, water_pixels.frag, water.frag, lib/water_surface.glsl,
 //          lib/water_reflection.glsl, lib/water_refraction.glsl, lib/water_tracing.glsl,
-//          lib/water_foam.glsl, lib/water_seen.glsl
+//          lib/water_foam.glsl, lib/water_visibility.glsl
 //
 // A body may have a planar reflection (WaterLook): a view of its own, at lower resolution, that
-// WaterMirrorEffect asks for and stores.
+// WaterMirrorEffect requests and stores.
 //
 // The scene behind is copied first, for refraction and screen-space reflection; the water therefore
 // shows neither itself nor blended surfaces.
@@ -46,8 +46,8 @@ struct WaterEffect {
     void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
 
-/// What planar water mirrors: asks for the mirrored view, whose image it stores with distances and
-/// blurred levels. Publishes PlanarReflection.
+/// Planar reflections: requests the mirrored view, and stores its image with distances and blurred
+/// levels. Publishes PlanarReflection.
 struct WaterMirrorEffect {
     const gpu::Program* copy = nullptr;
     gpu::Texture map{};

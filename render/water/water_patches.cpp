@@ -22,19 +22,19 @@ bool is_beyond(float half, float low, float high) {
 }
 
 bool is_visible(const Frustum& frustum, const Bounds& box) {
-    const Vec3 middle = center(box);
+    const Vec3 midpoint = center(box);
     const Vec3 half = half_extent(box);
     return std::all_of(
         std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
             const Vec3 normal(plane);
-            return glm::dot(normal, middle) + glm::dot(glm::abs(normal), half) + plane.w >= 0;
+            return glm::dot(normal, midpoint) + glm::dot(glm::abs(normal), half) + plane.w >= 0;
         });
 }
 
-/// The nearest of four squares around `middle`; the others from near to far are this index
+/// The nearest of four squares around `center`; the others from near to far are this index
 /// xor 1, 2 and 3.
-int nearest_square(const Vec2& middle, const Vec3& camera) {
-    return (camera.x > middle.x ? 1 : 0) + (camera.z > middle.y ? 2 : 0);
+int nearest_square(const Vec2& center, const Vec3& camera) {
+    return (camera.x > center.x ? 1 : 0) + (camera.z > center.y ? 2 : 0);
 }
 
 void walk(
@@ -87,13 +87,13 @@ void append_water_patches(const PatchSource& source, std::vector<WaterPatch>& pa
         return;
     }
     // Four squares of a fixed lattice around the camera.
-    const Vec2 middle =
-        glm::floor(Vec2(source.camera.x, source.camera.z) / kWaterReach + 0.5f) * kWaterReach;
-    const int nearest = nearest_square(middle, source.camera);
+    const Vec2 midpoint =
+        glm::floor(Vec2(source.camera.x, source.camera.z) / kWaterRange + 0.5f) * kWaterRange;
+    const int nearest = nearest_square(midpoint, source.camera);
     for (int i = 0; i < 4; ++i) {
         const int square = nearest ^ i;
         walk(
-            source, middle - kWaterReach * Vec2(1 - square % 2, 1 - square / 2), kWaterReach,
+            source, midpoint - kWaterRange * Vec2(1 - square % 2, 1 - square / 2), kWaterRange,
             patches);
     }
 }

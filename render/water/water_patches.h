@@ -13,12 +13,13 @@ namespace limn {
 // camera (CDLOD; Strugar, "Continuous Distance-Dependent Level of Detail", 2009). Each patch is
 // drawn with the same grid of layout::kWaterGrid cells per side; toward the distance of the next
 // coarser level every second vertex morphs onto its neighbor, so there are neither cracks nor
-// popping. Where no wave moves a patch, its inside is a fan of triangles, its border the same.
+// popping. Where no wave displaces a patch, a fan of triangles replaces its interior; its border
+// keeps its vertices.
 // Vertices are fixed in the water's own space, however the camera moves.
 
 inline constexpr float kMinPatchDetail = 2.2f;
 inline constexpr int kMaxWaterPatches = 8192;
-inline constexpr float kWaterReach =
+inline constexpr float kWaterRange =
     32768.0f;  ///< minimum extent of unbounded water around the camera [m]
 
 /// Layout of water.vert: two texels.
@@ -49,7 +50,7 @@ struct PatchSource {
 }
 
 /// Sets the lines of patches by the distance of their vertices; `lines`: longest first. The rule is
-/// wave_share() of lib/water_surface.glsl: those left out would be multiplied by 0.
+/// resolved_fraction() of lib/water_surface.glsl: those left out would be multiplied by 0.
 void resolve_lines(std::span<const WaveLine> lines, std::span<WaterPatch> patches);
 
 /// Appends the patches that may be visible, none before one that may hide it from the camera, at

@@ -29,12 +29,12 @@ visible_distance(const Water& water, const WaterFrame& frame, const RenderView& 
     const Vec2 unbounded(1e9f);
     const Vec2 half = glm::mix(unbounded, 0.5f * water.size, glm::greaterThan(water.size, Vec2(0)));
     const Vec2 beside = glm::max(glm::abs(Vec2(eye.x, eye.z)) - half, Vec2(0));
-    const Vec2 reach = glm::min(half + kWaveMargin, Vec2(1e5f));
+    const Vec2 extent = glm::min(half + kWaveMargin, Vec2(1e5f));
     const Frustum frustum = make_frustum(view.clip_from_world);
     for (const Vec4& plane : frustum.planes) {
         const Vec3 normal = frame.direction_to_local(Vec3(plane));
         const float furthest =
-            glm::dot(glm::abs(Vec2(normal.x, normal.z)), reach) + std::abs(normal.y) * kWaveMargin;
+            glm::dot(glm::abs(Vec2(normal.x, normal.z)), extent) + std::abs(normal.y) * kWaveMargin;
         if (glm::dot(Vec3(plane), frame.origin) + plane.w + furthest < 0) {
             return std::nullopt;
         }
@@ -48,11 +48,11 @@ std::optional<PlanarWater> find_planar_water(const World& world, const RenderVie
     std::optional<PlanarWater> nearest;
     float nearest_distance = 0;
     world.query<const Water, const WorldTransform, const WaterLook>().each(
-        [&](Entity entity, const Water& water, const WorldTransform& place, const WaterLook& look) {
+        [&](Entity entity, const Water& water, const WorldTransform& pose, const WaterLook& look) {
             if (look.reflection != WaterReflection::Planar) {
                 return;
             }
-            const WaterFrame frame = water_frame(place.world);
+            const WaterFrame frame = water_frame(pose.world);
             const std::optional<float> distance = visible_distance(water, frame, view);
             if (distance && (!nearest || *distance < nearest_distance)) {
                 nearest_distance = *distance;

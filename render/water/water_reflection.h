@@ -9,8 +9,8 @@ namespace limn {
 
 // Planar reflections (WaterReflection::Planar, water.reflection-refraction-maps): the scene above
 // the water is rendered once more from a camera mirrored at the rest surface, clipped there. Only
-// one body has it: of those that request it and are seen from above, the nearest. The others fall
-// back to screen-space reflections. The mirrored scene has no water and no caustics.
+// one body has it: of those that request it and are visible from above, the nearest. The others
+// fall back to screen-space reflections. The mirrored scene has no water and no caustics.
 
 struct PlanarWater {
     Entity entity;

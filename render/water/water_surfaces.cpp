@@ -54,11 +54,11 @@ bool WaterBodiesEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& waters = view.data.publish<WaterSurfaces>();
     const auto* planar = frame.data.find<PlanarReflection>();
     waters.textures = &textures;
-    place_waters(
+    build_water_list(
         textures.sources, view.camera,
         planar != nullptr && view.is(kMainViews) ? planar->water : Entity{}, textures.ripples,
         textures.seas, waters.list);
-    if (view.is(kMirrorView)) {  // what the water mirrors, without water
+    if (view.is(kMirrorView)) {  // the mirrored scene has no water
         waters.list.patches.clear();
         waters.list.around.reset();
     }

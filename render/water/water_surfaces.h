@@ -8,17 +8,17 @@
 
 namespace limn {
 
-// The surfaces of all waters, for every pass that asks where they are (lib/water_surface.glsl), and
-// which of them need caustic maps. Nothing is drawn here.
+// The surfaces of all waters, for every pass that evaluates them (lib/water_surface.glsl), and
+// which of them need caustic maps. Draws nothing.
 
-/// Of a frame: what the simulation computed, as textures.
+/// Results of the simulation in a frame, as textures.
 struct WaterTextures {
     WaterSources sources;
     RippleAtlas ripples;
     OceanTextures seas;
 };
 
-/// Of a view.
+/// The surfaces in a view.
 struct WaterSurfaces {
     const WaterTextures* textures = nullptr;
     WaterList list;

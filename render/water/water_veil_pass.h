@@ -4,7 +4,7 @@
 
 namespace limn {
 
-// Underwater fog: absorption and in-scattering between a submerged camera and what it sees
+// Underwater fog: absorption and in-scattering between a submerged camera and the surfaces in view
 // (Beer-Lambert). Where the surface cuts through the image, only the part below is affected.
 //
 // Reads    radiance, depth including the water, light clusters, environment, caustic maps

@@ -64,7 +64,7 @@ Mirror mirror_at(float a) {
 }  // namespace
 
 TEST_CASE(
-    "caustic optics: a ray meets a plane where it should, and one beside it never does"
+    "caustic optics: a ray hits a plane at the right distance, a parallel one never"
     * technique("caustic.projected-vertices")) {
     const Plane plane = {{0, 0, 1}, 0};
     CHECK(distance_to_plane({0, 0, 2}, {0, 0, -1}, plane) == test::near(2));
@@ -77,7 +77,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caustic optics: rays land on the first of a pool's planes"
+    "caustic optics: rays land on the nearest plane of a pool"
     * technique("caustic.projected-vertices")) {
     const std::array<Plane, 5> planes = pool_planes({2, 3}, 1.5f);
     for (int i = 0; i < 500; ++i) {
@@ -97,7 +97,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caustic optics: by areas no light is made or lost, and flat water lights evenly"
+    "caustic optics: ratios of areas conserve light, and flat water lights evenly"
     * technique("caustic.projected-vertices")) {
     const Plane bottom = {kUp, -2};
     const Vec3 to_sun = glm::normalize(Vec3(0.3f, 1, -0.2f));
@@ -128,11 +128,13 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caustic optics: a pool is as bright as the water is high, cubed"
+    "caustic optics: a pool is as bright as the cube of the water's height"
     * technique("caustic.refraction-pool")) {
     const float least = -0.3f;
     const float scale = pool_scale(least, 0.5f);
-    const auto at = [&](float share) { return pool_light(least + 0.8f * share, least, scale); };
+    const auto at = [&](float fraction) {
+        return pool_light(least + 0.8f * fraction, least, scale);
+    };
     CHECK(at(0) == 0);
     CHECK(at(1) == test::near(1));
     CHECK(at(0.5f) == test::near(0.125));
@@ -151,7 +153,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caustic optics: crests gather light, troughs scatter it, flat water lets it straight down"
+    "caustic optics: crests focus light, troughs spread it, flat water does neither"
     * technique("caustic.refraction-pool")) {
     const Plane bottom = {kUp, -2};
     const Vec3 below =
@@ -163,7 +165,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "caustic optics: a vertex mirrors light onto a plane as the book computes it"
+    "caustic optics: a vertex reflects light onto a plane as in the book"
     * technique("caustic.reflection-plane")) {
     const Plane plane = {{0, 0, 1}, 0};
     const Vec3 vertex(1, 0, 1);
@@ -213,8 +215,8 @@ TEST_CASE(
         const Vec3 d = reflect_ray(one.normal, {-1, 0, 0});
         const Vec3 e = reflect_ray(two.normal, {-1, 0, 0});
         const Vec3 between = two.at - one.at;
-        const float way = (between.x * e.z - between.z * e.x) / (d.x * e.z - d.z * e.x);
-        const Vec3 meet = one.at + way * d;
+        const float path = (between.x * e.z - between.z * e.x) / (d.x * e.z - d.z * e.x);
+        const Vec3 meet = one.at + path * d;
         const float t = a + 0.5f * kStep;
         CHECK(meet.x == test::near((3 * std::cos(t) - std::cos(3 * t)) / 4).epsilon(0.01));
         CHECK(std::abs(meet.z - (3 * std::sin(t) - std::sin(3 * t)) / 4) < 0.01f);
@@ -222,7 +224,7 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "caustic optics: shaders have the same functions"
+    RenderTest, "caustic optics: the GLSL functions equal the C++ ones"
                     * technique("caustic.reflection-plane, caustic.refraction-pool")) {
     std::vector<Vec4> mirrors;
     for (int i = 0; i < 256; ++i) {

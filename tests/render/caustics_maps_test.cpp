@@ -32,8 +32,8 @@ class Floor : public Scene {
             DirectionalLight{.color = {1, 1, 1}, .illuminance = 1},
             look_at({1e-4f, 1, 0}, {0, 0, 0}));
     }
-    Entity fill(const Water& water, const Vec3& place, const Caustics& caustics) {
-        return world.create(water, WorldTransform{at(place)}, caustics);
+    Entity fill(const Water& water, const Vec3& position, const Caustics& caustics) {
+        return world.create(water, WorldTransform{at(position)}, caustics);
     }
     Entity sea(const Caustics& caustics) {
         const Entity water = fill(
@@ -80,7 +80,7 @@ float relative_difference(const gpu::FloatImage& found, const gpu::FloatImage& e
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Floor, "caustics: cascades show far out what one large map shows, without a seam"
+    Floor, "caustics: cascades match one large map far from the camera, without a seam"
                * technique("caustic.projected-vertices")) {
     const Entity water = sea({.resolution = 1024, .spacing = 1, .window = 128});
     // Sixteen meters to each side: the finest window ends at four, the next at sixteen.
@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Floor, "caustics: cascades do not swim: they move in whole texels of their own"
+    Floor, "caustics: cascades do not swim, they move in whole texels"
                * technique("caustic.projected-vertices")) {
     sea({.resolution = 64, .spacing = 2, .window = 8, .cascades = 2});
     draw(from({0.01f, -0.5f, 0.01f}));
@@ -116,7 +116,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Floor, "caustics: a hundred pools are as many passes as one, and light lies in each of them"
+    Floor, "caustics: a hundred pools take as many passes as one, and each has caustics"
                * technique("caustic.projected-vertices")) {
     const float red = 0.2f;
     const auto fill_pool = [&](int i) {
@@ -142,18 +142,18 @@ TEST_CASE_FIXTURE(
     const float flat = (1 - fresnel(1, 1.333f)) / kPi;
     for (const int i : {0, 7, 55, 99}) {
         CAPTURE(i);
-        const Vec3 middle(
+        const Vec3 center(
             static_cast<float>(6 * (i % 10)), -kDepth + 0.5f, static_cast<float>(6 * (i / 10)));
-        const gpu::FloatImage seen = radiance(from(middle, 20));
-        CHECK(seen.at(32, 32, 1) / (flat) == test::near(1).epsilon(0.01));
+        const gpu::FloatImage image = radiance(from(center, 20));
+        CHECK(image.at(32, 32, 1) / (flat) == test::near(1).epsilon(0.01));
         const float left = std::exp(-red * (kDepth + 0.5f));  // down, and half a meter to the lens
-        CHECK(seen.at(32, 32, 0) / (flat * left) == test::near(1).epsilon(0.02));
-        const gpu::FloatImage dry = radiance(from(middle + Vec3(3, 0, 0), 20));
+        CHECK(image.at(32, 32, 0) / (flat * left) == test::near(1).epsilon(0.02));
+        const gpu::FloatImage dry = radiance(from(center + Vec3(3, 0, 0), 20));
         CHECK(dry.at(32, 32, 0) / (1 / kPi) == test::near(1).epsilon(0.01));
     }
 }
 
-TEST_CASE_FIXTURE(Floor, "caustics: a pool that is not seen has no map") {
+TEST_CASE_FIXTURE(Floor, "caustics: a pool out of view has no map") {
     const Entity pool = fill({.size = {4, 4}, .depth = 2}, {0, 0, 0}, {.resolution = 64});
     FrameGraph& graph = frame_graph(shared_renderer());
     const auto is_made = [&](const Vec3& eye, const Vec3& target) {

@@ -60,10 +60,10 @@ class Grotto : public Scene {
         return water;
     }
     /// Faces down.
-    Entity lay(const Vec3& middle, float half) {
+    Entity lay(const Vec3& center, float half) {
         return place(
             add(make_square()), white_,
-            affine_from(middle, glm::angleAxis(radians(90), Vec3(1, 0, 0)), Vec3(half)));
+            affine_from(center, glm::angleAxis(radians(90), Vec3(1, 0, 0)), Vec3(half)));
     }
     /// Light at the point of the ceiling straight above `eye`.
     float above(const Vec3& eye) { return rgb_at(radiance(from(eye)), 16, 16).x; }
@@ -73,16 +73,16 @@ class Grotto : public Scene {
             {.fov_y = radians(20.0f), .near = 0.01f}, pose, pose, {.width = 32, .height = 32});
     }
 
-    /// A map as CausticPlace and texels, the row of least z first.
+    /// A map as CausticTile and texels, the row of minimum z first.
     struct Map {
         Vec2 corner;
         Vec2 size;
         std::vector<float> texels;
-        [[nodiscard]] double at(const glm::dvec2& place) const {
+        [[nodiscard]] double at(const glm::dvec2& position) const {
             const double x =
-                std::clamp((place.x - corner.x) / size.x * kSide - 0.5, 0.0, kSide - 1.001);
+                std::clamp((position.x - corner.x) / size.x * kSide - 0.5, 0.0, kSide - 1.001);
             const double z =
-                std::clamp((place.y - corner.y) / size.y * kSide - 0.5, 0.0, kSide - 1.001);
+                std::clamp((position.y - corner.y) / size.y * kSide - 0.5, 0.0, kSide - 1.001);
             const auto i = static_cast<std::size_t>(x);
             const auto j = static_cast<std::size_t>(z);
             const double s = x - static_cast<double>(i);
@@ -139,7 +139,7 @@ oracle::CausticSurfaceAt surface_of(const WaveTable& table) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: flat water mirrors the sun evenly onto a ceiling, as much as Fresnel says"
+    Grotto, "caustics: flat water reflects the sun evenly onto a ceiling, by Fresnel's law"
                 * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     for (const float height : {70.0f, 35.0f}) {
@@ -162,7 +162,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: all light that waves mirror arrives above, to 1 %"
+    Grotto, "caustics: all light that waves reflect arrives above, within 1 %"
                 * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill(kCaustics));
     for (const float height : {65.0f, 40.0f}) {
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: what waves reflect onto a ceiling is that of traced photons"
+    Grotto, "caustics: light reflected by waves onto a ceiling matches traced photons"
                 * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill(kCaustics));
     const Vec3 to_sun = sun_at(radians(60));
@@ -217,7 +217,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: what hangs above the water cuts a hole into its mirrored light"
+    Grotto, "caustics: an object above the water occludes its reflected light"
                 * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     const Vec3 to_sun = sun_at(radians(60), 0);
@@ -238,7 +238,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: a wall gets mirrored light, and the same by every method"
+    Grotto, "caustics: a wall receives reflected light, the same with every light method"
                 * technique("caustic.projected-vertices")) {
     fill(kCaustics);
     const Vec3 to_sun = sun_at(radians(45), 0);
@@ -263,7 +263,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Grotto, "caustics: without a reach above, nothing is mirrored and no map is made") {
+    Grotto, "caustics: no light is reflected above mirror_reach, and there is no map if it is 0") {
     const Entity water = fill({.resolution = 64});
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);

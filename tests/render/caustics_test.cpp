@@ -70,10 +70,10 @@ class Pool : public Scene {
         world.add(water, table);
         return water;
     }
-    Entity block(const Vec3& middle, float half) {
+    Entity block(const Vec3& center, float half) {
         return place(
             add(make_square()), white_,
-            affine_from(middle, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half)));
+            affine_from(center, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half)));
     }
 
     /// The map of the first water; rows run along z.
@@ -123,10 +123,10 @@ oracle::CausticSurfaceAt surface_of(const WaveTable& table) {
     };
 }
 
-/// Texel of a place of the window, which is 3 % wider on both sides than the pool.
-double texel_of(double place, int side) {
+/// Texel of a position in the window, which is 3 % wider on both sides than the pool.
+double texel_of(double position, int side) {
     const double size = 2 * static_cast<double>(kHalf) * 1.06;
-    return (place / size + 0.5) * side;
+    return (position / size + 0.5) * side;
 }
 
 /// Mean of the map over the part of the floor from `low` to `high`.
@@ -166,7 +166,7 @@ Vec2 slant_of(const Vec3& to_sun, float index) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: flat water gathers nothing: even to 0.5 %, at any height of the sun"
+    Pool, "caustics: under flat water light is even within 0.5 %, at any sun elevation"
               * technique("caustic.projected-vertices")) {
     const Entity water = fill({.resolution = 128});
     Entity light = sun(sun_at(radians(80)));
@@ -194,7 +194,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: the floor of flat water gets what Fresnel and Snell let through"
+    Pool, "caustics: the floor below flat water is lit by the laws of Fresnel and Snell"
               * technique("caustic.projected-vertices")) {
     const float absorption = 0.3f;
     const Entity water = fill({.resolution = 64});
@@ -209,16 +209,16 @@ TEST_CASE_FIXTURE(
         if (!simulated) {
             world.remove<Caustics>(water);
         }
-        const Vec3 seen = rgb_at(radiance(from_below()), 48, 48);
-        CHECK(seen.y == test::near(through).epsilon(0.01));
-        CHECK(seen.x == test::near(through * left * veil).epsilon(0.005));
+        const Vec3 color = rgb_at(radiance(from_below()), 48, 48);
+        CHECK(color.y == test::near(through).epsilon(0.01));
+        CHECK(color.x == test::near(through * left * veil).epsilon(0.005));
     }
     world.destroy(water);
     CHECK(rgb_at(radiance(from_below()), 48, 48).x == test::near(to_sun.y / kPi).epsilon(0.005));
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: all light that waves let in arrives, to 1 %"
+    Pool, "caustics: all light that waves refract arrives, within 1 %"
               * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill({.resolution = 256}), some_waves());
     const Vec3 to_sun = sun_at(radians(60));
@@ -238,7 +238,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: they are those of traced photons, the nearer the finer the grid"
+    Pool, "caustics: they match traced photons, more closely on a finer grid"
               * technique("caustic.projected-vertices")) {
     const Entity water = wave(fill({.resolution = 256}), some_waves());
     const Vec3 to_sun = sun_at(radians(60));
@@ -275,8 +275,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: a ripple that moves takes its caustic along"
-              * technique("caustic.projected-vertices")) {
+    Pool,
+    "caustics: a moving ripple takes its caustic along" * technique("caustic.projected-vertices")) {
     const Entity water = fill({.resolution = 256});
     sun(sun_at(radians(89)));
     const WaterRipples ripples = {.cell = 0.05f};
@@ -307,13 +307,13 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: what stands in the water cuts a hole where bent light would go"
+    Pool, "caustics: an object in the water shadows the refracted light"
               * technique("caustic.projected-vertices")) {
     fill({.resolution = 256});
     const Vec3 to_sun = sun_at(radians(45), 0);
     sun(to_sun);
     block({0, -0.75f, 0}, 0.2f);
-    // Its shadow is as far aside as the bent ray goes on the rest of the way.
+    // Its shadow is offset by the horizontal distance of the refracted ray below it.
     const float aside = slant_of(to_sun, 1.333f).x * (kDepth - 0.75f);
     const auto floor_at = [&](float x) {
         return rgb_at(radiance(from_below({x, -1.2f, 0})), 48, 48).x;
@@ -326,7 +326,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: what stands above the water shades what lies below it"
+    Pool, "caustics: an object above the water shadows the floor below"
               * technique("caustic.projected-vertices")) {
     fill({.resolution = 256});
     const Vec3 to_sun = sun_at(radians(45), 0);
@@ -342,7 +342,8 @@ TEST_CASE_FIXTURE(
     CHECK(floor_at(entry + aside - 0.5f) > 0.1f);
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice to the bit") {
+TEST_CASE_FIXTURE(
+    Pool, "caustics: strength 0 equals flat water, and is bit-identical when repeated") {
     const Entity water = wave(fill({.resolution = 128, .strength = 0}), some_waves());
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
@@ -357,7 +358,7 @@ TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: those of the book are as bright as the water is high"
+    Pool, "caustics: the book's method is as bright as the cube of the water's height"
               * technique("caustic.refraction-pool")) {
     const Entity water = fill({.method = CausticMethod::Pool, .resolution = 256});
     world.get<Water>(water).depth = 0.01f;  // where it lands is where it comes from
@@ -376,8 +377,8 @@ TEST_CASE_FIXTURE(
         for (int i = 20; i < 236; i += 9) {
             const Vec2 at(place_of(i), place_of(row));
             const float height = evaluate_waves(world.get<WaveTable>(water), at).offset.y;
-            const float share = 0.5f + 0.5f * height / amplitude;
-            const float light = share * share * share;
+            const float fraction = 0.5f + 0.5f * height / amplitude;
+            const float light = fraction * fraction * fraction;
             CHECK(std::abs(found.at(i, row, 0) - light) < 0.005f);
             darkest = std::min(darkest, light);
             brightest = std::max(brightest, light);
@@ -388,14 +389,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "caustics: GPUs sum light as the CPU does, to the rounding of a texel"
+    RenderTest, "caustics: the GPU sums light as the CPU does, to the rounding of a texel"
                     * technique("caustic.projected-vertices")) {
     constexpr int kCells = 16;
     constexpr int kSide = 32;
     layout::CausticRecord record{};
     record.grid = {kCells, kSide, 0, 0};
     constexpr int kWidth = 64;
-    record.place = {kSide, 0, 0, 1};
+    record.target = {kSide, 0, 0, 1};
     std::vector<Vec4> rays;
     for (int z = 0; z <= kCells; ++z) {
         for (int x = 0; x <= kCells; ++x) {
@@ -442,7 +443,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "caustics: a mirror sends the sun where the book says, and nowhere else"
+    Pool, "caustics: a mirror reflects the sun onto the points of the book, and nowhere else"
               * technique("caustic.reflection-plane")) {
     // Upright at x = 1, a meter above the plane, turned toward -x; the sun comes down along (1,
     // -1).
@@ -474,7 +475,7 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(without, radiance(view)) == 0);
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {
+TEST_CASE_FIXTURE(Pool, "caustics: without the component there is no map and no pass") {
     sun(sun_at(radians(60)));
     draw(from_below());
     CHECK(!frame_graph(shared_renderer()).was_run("caustic rays"));
@@ -501,8 +502,8 @@ TEST_CASE_FIXTURE(Pool, "caustics: NaN and infinite settings give an image") {
              .mirror_resolution = 0}),
         some_waves());
     const auto all_finite = [&] {
-        const gpu::FloatImage seen = radiance(from_below());
-        return std::all_of(seen.pixels.begin(), seen.pixels.end(), [](float x) {
+        const gpu::FloatImage image = radiance(from_below());
+        return std::all_of(image.pixels.begin(), image.pixels.end(), [](float x) {
             return std::isfinite(x) && x >= 0;
         });
     };

@@ -214,10 +214,10 @@ TEST_CASE_FIXTURE(
         double farthest = 0;
         for (std::size_t i = 0; i < exact.size(); ++i) {
             const Receiver& r = exact[i];
-            if (r.there && r.position.y < 0.01) {
-                dark += r.seen < 0.5 ? 1 : 0;
+            if (r.valid && r.position.y < 0.01) {
+                dark += r.visibility < 0.5 ? 1 : 0;
             }
-            if (r.there && r.position.y < 0.01 && r.seen != coarse[i].seen) {
+            if (r.valid && r.position.y < 0.01 && r.visibility != coarse[i].visibility) {
                 ++other;
                 const double from = std::hypot(r.position.x, r.position.z) - edge;
                 farthest = std::max(farthest, std::abs(from));
@@ -243,8 +243,8 @@ TEST_CASE_FIXTURE(
     int dark = 0;
     int other = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
-        dark += exact[i].there && exact[i].seen < 0.5 ? 1 : 0;
-        other += exact[i].there && exact[i].seen != coarse[i].seen ? 1 : 0;
+        dark += exact[i].valid && exact[i].visibility < 0.5 ? 1 : 0;
+        other += exact[i].valid && exact[i].visibility != coarse[i].visibility ? 1 : 0;
     }
     CHECK(dark > 500);
     CHECK(other == 0);
@@ -263,9 +263,10 @@ TEST_CASE_FIXTURE(
         world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 512, .detail = detail});
         const std::vector<Receiver> seen = receivers(lamp, look({1, 5, 1}, {0, 0, 0}, 160, 160));
         const auto there =
-            std::count_if(seen.begin(), seen.end(), [](const Receiver& r) { return r.there; });
-        const auto bright = std::count_if(
-            seen.begin(), seen.end(), [](const Receiver& r) { return r.there && r.seen > 0.5; });
+            std::count_if(seen.begin(), seen.end(), [](const Receiver& r) { return r.valid; });
+        const auto bright = std::count_if(seen.begin(), seen.end(), [](const Receiver& r) {
+            return r.valid && r.visibility > 0.5;
+        });
         world.destroy(lamp);
         return static_cast<double>(bright) / static_cast<double>(there);
     };

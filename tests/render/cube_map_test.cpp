@@ -44,7 +44,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "cube_map: the length of a direction does not matter, and every texel has a direction"
+    "cube_map: the length of a direction is irrelevant, and every point has a direction"
     * technique("env.cube-addressing")) {
     for (const Vec3& d : random_directions(200)) {
         const CubePoint point = cube_point(d);
@@ -56,7 +56,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "cube_map: a face is a sixth of the sphere, whatever its texels" * technique("env.capture")) {
+    "cube_map: texels of a face add up to a sixth of the sphere, at any resolution"
+    * technique("env.capture")) {
     for (const int size : {1, 2, 7, 32}) {
         double sum = 0;
         for (int y = 0; y < size; ++y) {
@@ -70,7 +71,8 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "cube_map: the hardware finds the same texel" * technique("env.cube-addressing")) {
+    RenderTest,
+    "cube_map: the hardware samples the same texel" * technique("env.cube-addressing")) {
     constexpr int kSize = 8;
     gpu::Texture cube(
         "cube",
@@ -102,7 +104,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("cube_map: a face's camera is a rotation that sees each texel where it is stored") {
+TEST_CASE("cube_map: a face's camera is a rotation that renders each texel where it is stored") {
     const Vec3 eye = {3, -2, 5};
     for (int face = 0; face < kCubeFaces; ++face) {
         const Affine pose = cube_face_pose(face, eye);

@@ -16,14 +16,16 @@ namespace {
 const Dazzle kLamp = {
     .color = {0.2f, 0.6f, 4}, .opacity = 0.8f, .angle = 0.5f, .source_size = 0.02f};
 
-/// An even sky, seen from the origin along -z.
+/// A uniform sky, viewed from the origin along -z.
 struct DazzleScene : Scene {
     DazzleScene() {
         world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
     }
     RenderView view = look({0, 0, 0}, {0, 0, -1}, 64, 64);
 
-    Entity shine_at(const Vec3& place) { return world.create(kLamp, WorldTransform{at(place)}); }
+    Entity shine_at(const Vec3& position) {
+        return world.create(kLamp, WorldTransform{at(position)});
+    }
     void clear_points() {
         std::vector<Entity> all;
         world.query<const Dazzle>().each(
@@ -40,7 +42,7 @@ struct DazzleScene : Scene {
 }  // namespace
 
 TEST_CASE(
-    "dazzle: all of the opacity straight ahead, half at half the angle, none beyond"
+    "dazzle: full opacity straight ahead, half at half the angle, none beyond it"
     * technique("engine.obfuscating-point")) {
     CHECK(dazzle_weight(kLamp, 0) == near(0.8));
     CHECK(dazzle_weight(kLamp, 0.25f) == near(0.4));
@@ -70,7 +72,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    DazzleScene, "dazzle: what stands before the point hides it, what is behind does not"
+    DazzleScene, "dazzle: a surface in front of the point hides it, one behind it does not"
                      * technique("engine.obfuscating-point")) {
     shine_at({0, 0, -5});
     const MeshId square = add(make_square());
@@ -82,12 +84,12 @@ TEST_CASE_FIXTURE(
     const Entity hidden = place(square, black, at({0, 0, -3}));
     CHECK(weight() == 0);
     world.destroy(hidden);
-    place(square, black, at({-1, 0, -3}));  // its edge is in the middle
+    place(square, black, at({-1, 0, -3}));  // its edge is at the image center
     CHECK(weight() == near(0.4).epsilon(0.2));
 }
 
 TEST_CASE_FIXTURE(
-    DazzleScene, "dazzle: a directional light does so from where it comes"
+    DazzleScene, "dazzle: a directional light dazzles from its direction"
                      * technique("engine.obfuscating-point")) {
     const Affine pose = affine_from({0, 0, 0}, glm::angleAxis(kPi, Vec3(0, 1, 0)), Vec3(1));
     const Entity sun =
@@ -97,7 +99,8 @@ TEST_CASE_FIXTURE(
     CHECK(weight() == 0);
 }
 
-TEST_CASE_FIXTURE(DazzleScene, "dazzle: none, or nonsense, draws no pass and no NaN") {
+TEST_CASE_FIXTURE(
+    DazzleScene, "dazzle: without it, or with invalid values, there is no pass and no NaN") {
     const float plain = corner().x;
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("dazzle"));
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

@@ -22,11 +22,11 @@ constexpr float kFocus = 2.0f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// What a pixel shows: x to the right, y up.
-struct Seen {
+struct PixelContent {
     Vec3 light = Vec3(0);
     float distance = kFocus;  ///< [m]
 };
-using Show = std::function<Seen(int x, int y)>;
+using Show = std::function<PixelContent(int x, int y)>;
 
 /// A lens that images infinity, focused at kFocus, as a disc of `diameter` [px].
 RenderView lens_view(int width, int height, float diameter, int blades = 0) {
@@ -54,7 +54,7 @@ class Darkroom : public RenderTest {
         std::vector<float> depth;
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
-                const Seen seen = show(x, y);
+                const PixelContent seen = show(x, y);
                 light.emplace_back(seen.light, 1.0f);
                 depth.push_back(static_cast<float>(
                     reversed_depth(static_cast<double>(seen.distance), double(kNear))));
@@ -91,7 +91,7 @@ float light_at(const gpu::FloatImage& image, int x, int y) {
     return image.at(x, image.height - 1 - y, 0);
 }
 
-/// Sum, middle and second moment of an image's light.
+/// Sum, centroid and second moment of an image's light.
 struct Moments {
     double sum = 0;
     double x = 0;
@@ -129,14 +129,17 @@ constexpr float kAll = 48;  // diameter of infinity in most tests [px]
 
 /// One pixel that shines, on a black wall `distance` away.
 Show spark(float distance, int x0, int y0) {
-    return [=](int x, int y) { return Seen{x == x0 && y == y0 ? Vec3(1000) : Vec3(0), distance}; };
+    return [=](int x, int y) {
+        return PixelContent{x == x0 && y == y0 ? Vec3(1000) : Vec3(0), distance};
+    };
 }
 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a point is a disc of the right diameter and all its light"
-                  * technique("post.circle-of-confusion")) {
+    Darkroom,
+    "depth_of_field: a point becomes a disc of the right diameter that keeps all its light"
+        * technique("post.circle-of-confusion")) {
     const RenderView view = lens_view(192, 192, kAll);
     for (const float diameter :
          {-44.0f, -30.0f, -20.0f, -12.0f, -7.0f, -3.0f, 2.0f, 4.5f, 9.0f, 16.0f, 26.0f, 40.0f}) {
@@ -144,7 +147,7 @@ TEST_CASE_FIXTURE(
         const Moments m = moments_of(photograph(view, spark(distance_of(diameter, kAll), 93, 101)));
         CHECK(m.sum == test::near(1000).epsilon(0.01));
         CHECK(std::abs(diameter_of(m) - std::abs(double(diameter))) < 0.5);
-        // Half resolution knows places to a pixel; highlights are placed by their own.
+        // At half resolution positions are exact to a pixel; highlights have their own.
         const double near = std::abs(diameter) > 24 ? 0.1 : 0.75;
         CHECK(std::abs(m.x - 93.5) < near);
         CHECK(std::abs(m.y - 101.5) < near);
@@ -152,13 +155,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a point before what is blurred otherwise is a disc all the same") {
+    Darkroom, "depth_of_field: a point in front of a surface with another blur is still a disc") {
     const RenderView view = lens_view(192, 192, kAll);
     for (const float diameter : {-30.0f, -12.0f, -3.5f, 2.5f, 3.5f, 16.0f, 40.0f}) {
         CAPTURE(diameter);
         const float distance = distance_of(diameter, kAll);
         const Moments m = moments_of(photograph(view, [&](int x, int y) {
-            return x == 93 && y == 101 ? Seen{Vec3(1000), distance} : Seen{Vec3(0), kInfinity};
+            return x == 93 && y == 101 ? PixelContent{Vec3(1000), distance}
+                                       : PixelContent{Vec3(0), kInfinity};
         }));
         CHECK(m.sum == test::near(1000).epsilon(0.01));
         CHECK(std::abs(diameter_of(m) - std::abs(double(diameter))) < 0.5);
@@ -166,7 +170,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: right before the lens a point is a disc as wide as the widest") {
+    Darkroom, "depth_of_field: right in front of the lens a point is a disc of maximum width") {
     const RenderView view = lens_view(192, 192, kAll);  // 432 px wide by the law, 0.2 m away
     const Moments m = moments_of(photograph(view, spark(0.2f, 96, 96)));
     CHECK(std::abs(diameter_of(m) - 0.25 * 192) < 0.5);
@@ -174,7 +178,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a lamp before the night keeps its light, whatever gathers it") {
+    Darkroom, "depth_of_field: a lamp in front of a black sky keeps its light in every layer") {
     const RenderView view = lens_view(96, 96, 11);
     for (const float diameter :
          {-9.0f, -6.0f, -5.5f, -5.0f, -4.5f, -4.0f, 4.0f, 4.5f, 5.0f, 5.5f, 6.0f, 7.5f, 9.0f}) {
@@ -182,7 +186,7 @@ TEST_CASE_FIXTURE(
         const float distance = distance_of(diameter, 11);
         const Moments m = moments_of(photograph(view, [&](int x, int y) {
             const bool lamp = x / 2 == 24 && y / 2 == 25;
-            return lamp ? Seen{Vec3(250), distance} : Seen{Vec3(0), kInfinity};
+            return lamp ? PixelContent{Vec3(250), distance} : PixelContent{Vec3(0), kInfinity};
         }));
         // Half of it gathered from the image, half from its half: each hides some of the other.
         const double most = std::abs(diameter) == 4.5f ? 0.05 : 0.02;
@@ -194,12 +198,13 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: past a slightly blurred rim the far is seen in every tile") {
+    Darkroom, "depth_of_field: past a slightly blurred edge the background shows in every tile") {
     const RenderView view = lens_view(96, 96, kAll);
     // The outline slants through a border of tiles, at x = 48.
     const auto is_card = [](int x, int y) { return 8 * x + y < 8 * 48 + 40; };
     const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-        return is_card(x, y) ? Seen{Vec3(0), distance_of(-3.5f, kAll)} : Seen{Vec3(1), kInfinity};
+        return is_card(x, y) ? PixelContent{Vec3(0), distance_of(-3.5f, kAll)}
+                             : PixelContent{Vec3(1), kInfinity};
     });
     for (int y = 8; y < 88; ++y) {
         CAPTURE(y);
@@ -212,7 +217,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("depth_of_field: kernels of the half image are as wide as circles less the tents") {
+TEST_CASE("depth_of_field: half-resolution kernels are as wide as circles less the tents") {
     const layout::FocusBlock block = make_focus_block(lens_view(64, 64, 14));
     for (int i = 3 * layout::kKernelStep; i < layout::kKernels; ++i) {
         CAPTURE(i);
@@ -232,7 +237,7 @@ TEST_CASE("depth_of_field: kernels of the half image are as wide as circles less
     }
 }
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: the sky is blurred as what is infinitely far away") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: the sky is blurred as a surface at infinity") {
     const RenderView view = lens_view(160, 160, 36);
     const Moments m = moments_of(photograph(view, spark(kInfinity, 80, 80)));
     CHECK(std::abs(diameter_of(m) - 36) < 0.5);
@@ -281,12 +286,11 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: what is sharp does not leak into what is far behind it") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: a sharp surface does not leak into a far background") {
     const RenderView view = lens_view(160, 160, kAll);
     const gpu::FloatImage image = photograph(view, [](int x, int y) {
         const bool card = x >= 60 && x < 100 && y >= 50 && y < 110;
-        return card ? Seen{Vec3(1), kFocus} : Seen{Vec3(0), 40.0f};
+        return card ? PixelContent{Vec3(1), kFocus} : PixelContent{Vec3(0), 40.0f};
     });
     float most = 0;
     for (int y = 0; y < 160; ++y) {
@@ -302,13 +306,13 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a highlight far behind does not shine through what is sharp") {
+    Darkroom, "depth_of_field: a far highlight does not shine through a sharp surface") {
     const RenderView view = lens_view(160, 160, kAll);
     const gpu::FloatImage image = photograph(view, [](int x, int y) {
         if (x < 80) {
-            return Seen{Vec3(0), kFocus};
+            return PixelContent{Vec3(0), kFocus};
         }
-        return Seen{x == 84 && y == 80 ? Vec3(1000) : Vec3(0), 100.0f};
+        return PixelContent{x == 84 && y == 80 ? Vec3(1000) : Vec3(0), 100.0f};
     });
     for (int x = 40; x < 80; ++x) {
         CHECK(light_at(image, x, 80) == 0.0f);
@@ -316,13 +320,12 @@ TEST_CASE_FIXTURE(
     CHECK(light_at(image, 90, 80) > 0.3f);
 }
 
-TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: what stands before the focus spreads over what is sharp") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: a near surface spreads over a sharp one") {
     const RenderView view = lens_view(160, 160, kAll);
     for (const float radius : {10.0f, 20.0f}) {
         const float near = distance_of(-2 * radius, kAll);
         const gpu::FloatImage image = photograph(view, [&](int x, int /*y*/) {
-            return x < 80 ? Seen{Vec3(1), near} : Seen{Vec3(0), kFocus};
+            return x < 80 ? PixelContent{Vec3(1), near} : PixelContent{Vec3(0), kFocus};
         });
         // Beside a straight edge a disc is covered as far as it lies beyond it.
         for (int x = 45; x < 115; ++x) {
@@ -335,14 +338,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: what stands far before the focus lies over what stands less far") {
+    Darkroom, "depth_of_field: the nearest surface covers those nearer to the focus") {
     const RenderView view = lens_view(160, 160, kAll);
     const float radius = 20;
     for (const float behind : {-3.0f, -4.5f, -6.0f, -9.0f}) {
         CAPTURE(behind);
         const gpu::FloatImage image = photograph(view, [&](int x, int /*y*/) {
-            return x < 80 ? Seen{Vec3(1), distance_of(-2 * radius, kAll)}
-                          : Seen{Vec3(0), distance_of(behind, kAll)};
+            return x < 80 ? PixelContent{Vec3(1), distance_of(-2 * radius, kAll)}
+                          : PixelContent{Vec3(0), distance_of(behind, kAll)};
         });
         for (int x = 84; x < 115; ++x) {
             CAPTURE(x);
@@ -353,7 +356,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an uniform image stays uniform, whatever is where") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: a uniform image stays uniform at any depths") {
     for (const IVec2 size : {IVec2(128, 96), IVec2(97, 61), IVec2(7, 5), IVec2(16384, 4)}) {
         CAPTURE(size.x);
         RenderView view = lens_view(size.x, size.y, 14);
@@ -367,7 +370,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an uniform image stays uniform, wha
             continue;
         }
         const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-            return Seen{Vec3(0.5f), at[(x / 9 + 5 * (y / 9)) % 64]};
+            return PixelContent{Vec3(0.5f), at[(x / 9 + 5 * (y / 9)) % 64]};
         });
         const auto [low, high] = std::minmax_element(image.pixels.begin(), image.pixels.end());
         CHECK(*low >= 0.5f * 0.999f);
@@ -382,12 +385,14 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an uniform image stays uniform, wha
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: a table that comes nearer shows nothing of the wall behind it") {
+    Darkroom,
+    "depth_of_field: a table that approaches the camera shows nothing of the wall behind") {
     constexpr int kSide = 192;
     constexpr int kEdge = 160;  // of the table [px]
     const gpu::FloatImage image = photograph(lens_view(kSide, kSide, kAll), [&](int /*x*/, int y) {
         const float circle = 2 + 30.0f * static_cast<float>(kEdge - y) / kEdge;
-        return y < kEdge ? Seen{Vec3(0.5f), distance_of(-circle, kAll)} : Seen{Vec3(20)};
+        return y < kEdge ? PixelContent{Vec3(0.5f), distance_of(-circle, kAll)}
+                         : PixelContent{Vec3(20)};
     });
     for (int y = 2; y < kEdge - 20; ++y) {
         CAPTURE(y);
@@ -396,7 +401,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: what is in focus keeps every bit" * technique("post.dof-mip")) {
+    Darkroom, "depth_of_field: surfaces in focus are bit-identical" * technique("post.dof-mip")) {
     Random random(5, 0, 0, 0);
     std::vector<Vec3> light(64 * 48);
     for (Vec3& one : light) {
@@ -406,7 +411,7 @@ TEST_CASE_FIXTURE(
         RenderView view = lens_view(64, 48, 40);
         view.lens.method = method;
         const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-            return Seen{light[y * 64 + x], kFocus};
+            return PixelContent{light[y * 64 + x], kFocus};
         });
         for (int y = 0; y < 48; ++y) {
             for (int x = 0; x < 64; ++x) {
@@ -416,11 +421,11 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: NaN and infinite radiance stay where they are") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: NaN and infinite radiance do not spread") {
     const RenderView view = lens_view(96, 96, kAll);
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity}) {
         const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-            return Seen{x == 40 && y == 40 ? Vec3(bad) : Vec3(0.25f), 50.0f};
+            return PixelContent{x == 40 && y == 40 ? Vec3(bad) : Vec3(0.25f), 50.0f};
         });
         for (int y = 0; y < 96; ++y) {
             for (int x = 0; x < 96; ++x) {
@@ -430,7 +435,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: NaN and infinite radiance stay wher
     }
 }
 
-TEST_CASE("depth_of_field: a lens whose circles are no larger than a pixel is none") {
+TEST_CASE("depth_of_field: a lens whose circles are no larger than a pixel adds no pass") {
     RenderView view = lens_view(640, 360, 20);
     CHECK(has_depth_of_field(view));
     view.lens.max_blur = 0;
@@ -445,7 +450,7 @@ TEST_CASE("depth_of_field: a lens whose circles are no larger than a pixel is no
     CHECK(has_depth_of_field(view));
 }
 
-TEST_CASE_FIXTURE(Scene, "depth_of_field: a pinhole adds no pass and changes no bit") {
+TEST_CASE_FIXTURE(Scene, "depth_of_field: a pinhole adds no pass, and the image is bit-identical") {
     const MaterialId bright =
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 0.5f, 0.25f, 1}});
     place(add(make_square()), bright, at({0.2f, -0.1f, 0}));
@@ -460,7 +465,7 @@ TEST_CASE_FIXTURE(Scene, "depth_of_field: a pinhole adds no pass and changes no 
     CHECK(frame_graph(shared_renderer()).was_run("focus.compose"));
 }
 
-TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the image through the lens") {
+TEST_CASE_FIXTURE(Scene, "depth_of_field: glow comes after it, from the image through the lens") {
     place(add(make_square()), add(Material{.shading = ShadingModel::Unlit}), at({0, 0, 0}));
     world.insert_resource(Glow{.strength = 0.1f});
     RenderView view = look({0, 0, 3}, {0, 0, 0}, 64, 48);
@@ -481,11 +486,11 @@ TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the image through the lens"
 
 TEST_CASE_FIXTURE(
     Darkroom,
-    "depth_of_field: by mip levels, an uniform image stays uniform" * technique("post.dof-mip")) {
+    "depth_of_field: by mip levels, a uniform image stays uniform" * technique("post.dof-mip")) {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     const gpu::FloatImage image = photograph(view, [](int x, int y) {
-        return Seen{
+        return PixelContent{
             Vec3(0.5f), 0.6f + 0.1f * static_cast<float>(x) + 0.03f * static_cast<float>(y)};
     });
     for (int y = 0; y < 64; ++y) {
@@ -502,7 +507,7 @@ TEST_CASE_FIXTURE(
     view.lens.method = FocusMethod::Mip;
     const float distance = distance_of(8, 14);
     const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-        return Seen{Vec3(x == 28 && y == 28 ? 64 : 0), distance};
+        return PixelContent{Vec3(x == 28 && y == 28 ? 64 : 0), distance};
     });
     // A texel of level 3 is 8 px wide and 1 here; around it a tent of bilinear reading.
     const auto tent = [](int x) {
@@ -526,7 +531,7 @@ TEST_CASE_FIXTURE(
     for (const float diameter : {0.9f, -0.9f}) {
         const float distance = distance_of(diameter, 14);
         const gpu::FloatImage image = photograph(view, [&](int x, int y) {
-            return Seen{Vec3((x + y) % 2 == 0 ? 1 : 0), distance};
+            return PixelContent{Vec3((x + y) % 2 == 0 ? 1 : 0), distance};
         });
         for (int x = 0; x < 64; ++x) {
             CHECK(light_at(image, x, 20) == ((x + 20) % 2 == 0 ? 1.0f : 0.0f));
@@ -535,11 +540,11 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Darkroom, "depth_of_field: by mip levels, what is sharp leaks, which the gather was made for") {
+    Darkroom, "depth_of_field: by mip levels, sharp surfaces leak, which gathering avoids") {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     const gpu::FloatImage image = photograph(view, [](int x, int /*y*/) {
-        return x < 32 ? Seen{Vec3(1), kFocus} : Seen{Vec3(0), 40.0f};
+        return x < 32 ? PixelContent{Vec3(1), kFocus} : PixelContent{Vec3(0), 40.0f};
     });
     CHECK(light_at(image, 33, 32) > 0.2f);
 }
@@ -547,7 +552,7 @@ TEST_CASE_FIXTURE(
 // ---- depth buffers (post.linear-to-window-depth)
 
 TEST_CASE(
-    "depth_of_field: window depth of eye distances, and back"
+    "depth_of_field: eye distance converts to window depth and back"
     * technique("post.linear-to-window-depth")) {
     CHECK(window_depth(1, 1, 100) == 0);
     CHECK(window_depth(100, 1, 100) == test::near(1));
@@ -576,7 +581,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "depth_of_field: reversed depth without a far plane is the limit, as the projection has it"
+    "depth_of_field: reversed depth without a far plane is the limit of the projection"
     * technique("post.linear-to-window-depth")) {
     const RenderView view = lens_view(64, 64, 10);
     for (const float z : {0.1f, 0.5f, 3.0f, 1000.0f}) {

@@ -31,7 +31,7 @@ Picture make_picture(Function&& value) {
     return picture;
 }
 
-/// A bright disc of radius 12 in the middle of a dark ground.
+/// A bright disc of radius 12 in the center of a dark ground.
 Picture make_spot(double bright = 20, double dark = 0.1) {
     return make_picture([=](int x, int y) {
         return std::hypot(x - kWidth / 2 + 0.5, y - kHeight / 2 + 0.5) < 12 ? bright : dark;
@@ -47,7 +47,7 @@ Picture make_room() {
     });
 }
 
-/// At the middle of a pixel, of an image of `step` pixels a texel, as a linear filter reads it.
+/// At the center of a pixel, sampled bilinearly in an image of `step` pixels per texel.
 double read_between(const gpu::FloatImage& image, int channel, int x, int y, int step) {
     const double at_x = std::clamp((x + 0.5) / step - 0.5, 0.0, image.width - 1.0);
     const double at_y = std::clamp((y + 0.5) / step - 0.5, 0.0, image.height - 1.0);
@@ -101,9 +101,7 @@ struct DodgeBurn : RenderTest {
 
 }  // namespace
 
-TEST_CASE(
-    "hdr: a uniform image is burned as a whole, by the global curve"
-    * technique("hdr.dodge-burn")) {
+TEST_CASE("hdr: a uniform image is mapped by the global curve" * technique("hdr.dodge-burn")) {
     for (const double l : {0.02, 0.18, 3.0}) {
         const oracle::DodgeBurn local =
             oracle::dodge_burn(Picture(kWidth * kHeight, l), kWidth, kHeight);
@@ -117,11 +115,12 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: regions are small near an edge and large far from it" * technique("hdr.dodge-burn")) {
+    "hdr: even regions are small near an edge and large far from it"
+    * technique("hdr.dodge-burn")) {
     const oracle::DodgeBurn local = oracle::dodge_burn(make_spot(), kWidth, kHeight);
-    const int middle = kHeight / 2;
-    const int edge = local.scale[index(kWidth / 2 + 13, middle)];
-    const int near_by = local.scale[index(kWidth / 2 + 24, middle)];
+    const int center_row = kHeight / 2;
+    const int edge = local.scale[index(kWidth / 2 + 13, center_row)];
+    const int near_by = local.scale[index(kWidth / 2 + 24, center_row)];
     const int far_away = local.scale[index(kWidth - 1, 0)];
     CHECK(edge < near_by);
     CHECK(near_by < far_away);
@@ -129,7 +128,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: against the global curve, local contrast is kept or raised"
+    "hdr: relative to the global curve, local contrast is preserved or raised"
     * technique("hdr.dodge-burn")) {
     const Picture room = make_room();
     const oracle::DodgeBurn local = oracle::dodge_burn(room, kWidth, kHeight);
@@ -148,20 +147,19 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    DodgeBurn,
-    "hdr: the blurs of the GPU are the oracle's Gaussians" * technique("hdr.dodge-burn")) {
+    DodgeBurn, "hdr: the GPU's blurs match the oracle's Gaussians" * technique("hdr.dodge-burn")) {
     const Picture room = make_room();
     const gpu::Texture texture = upload(room);
     graph.begin_frame();
     const LocalLuminance blurred =
         blur_luminance(graph, tone_mapper.local, graph.import("picture", texture));
-    for (const TextureId id : {blurred.fine, blurred.middle, blurred.coarse}) {
+    for (const TextureId id : {blurred.fine, blurred.medium, blurred.coarse}) {
         graph.keep(id);
     }
     graph.execute();
     const gpu::FloatImage levels[] = {
         gpu::read_floats(*graph.texture(blurred.fine)),
-        gpu::read_floats(*graph.texture(blurred.middle)),
+        gpu::read_floats(*graph.texture(blurred.medium)),
         gpu::read_floats(*graph.texture(blurred.coarse))};
     // Largest and mean relative error: of the shrunken levels, that of reading between texels.
     constexpr double kLargest[] = {1e-5, 1e-5, 1e-5, 5e-4, 0.21, 0.05, 0.04, 0.03, 0.215, 0.14};
@@ -191,7 +189,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    DodgeBurn, "hdr: the GPU dodges and burns like the oracle" * technique("hdr.dodge-burn")) {
+    DodgeBurn, "hdr: dodge and burn on the GPU matches the oracle" * technique("hdr.dodge-burn")) {
     for (const Picture& picture :
          {make_spot(), make_spot(1.2, 0.3), make_room(), Picture(kWidth * kHeight, 0.4)}) {
         const Picture got = show(picture);
@@ -218,7 +216,7 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: a uniform image gets the global curve on the 
     }
 }
 
-TEST_CASE_FIXTURE(DodgeBurn, "hdr: a NaN pixel darkens nothing but itself") {
+TEST_CASE_FIXTURE(DodgeBurn, "hdr: a NaN pixel affects only itself") {
     Picture picture(kWidth * kHeight, 0.4);
     picture[index(80, 48)] = std::nan("");
     picture[index(20, 20)] = INFINITY;

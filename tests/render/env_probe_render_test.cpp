@@ -57,7 +57,7 @@ struct ProbeScene : Scene {
     const MeshId sphere = add(make_ball(48));
 };
 
-/// Mean difference as a share of the mean of `b`.
+/// Mean difference relative to the mean of `b`.
 double relative_difference(const gpu::FloatImage& a, const gpu::FloatImage& b) {
     double sum = 0;
     double scale = 0;
@@ -77,7 +77,7 @@ TEST_CASE_FIXTURE(
     const EnvProbe probe = {.radius = 2, .resolution = 64};
     ball(kMirror, &probe);
     for (int face = 0; face < kCubeFaces; ++face) {
-        // What lies behind the camera is what the ball's middle shows.
+        // The center of the ball reflects the wall behind the camera.
         const Vec3 axis = cube_direction({face, {0.5f, 0.5f}});
         const gpu::FloatImage image = radiance(look(3.0f * axis, {0, 0, 0}, 33, 33));
         CAPTURE(face);
@@ -92,7 +92,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ProbeScene, "env_probe: one that sees nothing but the sky changes nothing, seams included"
+    ProbeScene, "env_probe: a probe of nothing but the sky changes nothing, not even at seams"
                     * technique("env.capture")) {
     for (const SkyKind sky : {SkyKind::Gradient, SkyKind::Studio}) {
         for (const bool visible : {true, false}) {
@@ -118,7 +118,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ProbeScene, "env_probe: diffuse surfaces get the irradiance of what it sees") {
+TEST_CASE_FIXTURE(
+    ProbeScene, "env_probe: diffuse surfaces get the irradiance of the captured cube map") {
     // Half of what surrounds the ball is red, half is black.
     wall({1, 0, 0}, wall_at({0, 0, 40}, {0, 0, -1}, 4000));
     const EnvProbe probe = {.radius = 2, .resolution = 64};
@@ -132,7 +133,7 @@ TEST_CASE_FIXTURE(ProbeScene, "env_probe: diffuse surfaces get the irradiance of
 
 TEST_CASE_FIXTURE(
     ProbeScene,
-    "env_probe: its entity and what is below that is not seen by it" * technique("env.capture")) {
+    "env_probe: the capture excludes its entity and the descendants" * technique("env.capture")) {
     room(5);
     const EnvProbe probe = {.radius = 2, .resolution = 64};
     const Entity mirror = ball(kMirror, &probe);
@@ -154,10 +155,10 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ProbeScene, "env_probe: in a box a mirror shows the point of the wall that its ray meets"
+    ProbeScene, "env_probe: in a box a mirror shows the point of the wall that its ray hits"
                     * technique("env.capture")) {
     room(4);
-    // A plane mirror off the middle, and a probe in it: without the box, what is seen from there.
+    // A plane mirror off the center, and a probe in it: without the box, the view from there.
     const Vec3 place_of_mirror = {0, -3, 0};
     place(square, add(kMirror), wall_at(place_of_mirror, {0, 1, 0}, 2));
     const auto wrong_share = [&](const EnvProbe& probe) {
@@ -185,9 +186,9 @@ TEST_CASE_FIXTURE(
                 float nearest = INFINITY;
                 int axis = 0;
                 for (int i = 0; i < 3; ++i) {
-                    const float way = ((d[i] > 0 ? 4 : -4) - p[i]) / d[i];
-                    if (way < nearest) {
-                        nearest = way;
+                    const float distance = ((d[i] > 0 ? 4 : -4) - p[i]) / d[i];
+                    if (distance < nearest) {
+                        nearest = distance;
                         axis = i;
                     }
                 }
@@ -208,7 +209,8 @@ TEST_CASE_FIXTURE(
     CHECK(far > 0.1);
 }
 
-TEST_CASE_FIXTURE(ProbeScene, "env_probe: it fades out smoothly, and the smaller one comes first") {
+TEST_CASE_FIXTURE(
+    ProbeScene, "env_probe: it fades out smoothly, and smaller probes take precedence") {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0, 0, 1}});
     const auto shell = [&](const Vec3& color, float radius) {
         return place(

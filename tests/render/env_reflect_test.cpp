@@ -49,7 +49,7 @@ double worst_reflection(MirrorScene& scene, const Vec3& eye, Normal&& normal) {
     const layout::EnvironmentBlock sky = make_environment_block(kSky, Vec3(0, 1, 0), Vec3(0));
     const auto& r = view.world_from_camera.row;
     double worst = 0;
-    int seen = 0;
+    int visible = 0;
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const float d = depth.at(x, y, 0);
@@ -69,10 +69,10 @@ double worst_reflection(MirrorScene& scene, const Vec3& eye, Normal&& normal) {
             }
             const Vec3 want = sky_radiance(sky, Vec3(direction));
             worst = std::max<double>(worst, glm::distance(rgb_at(image, x, y), want));
-            ++seen;
+            ++visible;
         }
     }
-    REQUIRE(seen > 300);
+    REQUIRE(visible > 300);
     return worst;
 }
 
@@ -116,7 +116,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MirrorScene, "env_reflect: of a stretched, turned ball, by the normals of the ellipsoid"
+    MirrorScene, "env_reflect: a stretched, rotated ball reflects by the normals of the ellipsoid"
                      * technique("env.reflect")) {
     const Affine pose = affine_from(
         {0, 0, 0}, glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 3))), {1.3f, 0.6f, -0.9f});
@@ -132,7 +132,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     MirrorScene,
-    "env_reflect: the image does not turn with the mirror" * technique("env.reflect")) {
+    "env_reflect: the reflection does not rotate with the mirror" * technique("env.reflect")) {
     const Entity entity = ball(at({0, 0, 0}));
     const RenderView view = look({0.3f, 0.8f, 2}, {0, 0, 0}, 96, 96);
     const gpu::FloatImage still = radiance(view);
@@ -149,17 +149,18 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    MirrorScene,
-    "env_reflect: the distance of the eye changes nothing along a ray" * technique("env.reflect")) {
+    MirrorScene, "env_reflect: moving the eye along a ray does not change its reflection"
+                     * technique("env.reflect")) {
     place(add(make_square()), mirror, affine_from({0, 0, 0}, {1, 0, 0, 0}, {9, 9, 1}));
     const Vec3 toward_eye = {0.4f, 1.1f, 1.0f};
-    const auto middle = [&](float distance) {
+    const auto center_color = [&](float distance) {
         return rgb_at(radiance(look(distance * toward_eye, {0, 0, 0}, 9, 9)), 4, 4);
     };
-    CHECK(glm::distance(middle(1), middle(2)) < 1e-4f);
-    CHECK(glm::distance(middle(1), middle(5)) < 1e-4f);
+    CHECK(glm::distance(center_color(1), center_color(2)) < 1e-4f);
+    CHECK(glm::distance(center_color(1), center_color(5)) < 1e-4f);
     CHECK(
-        glm::distance(middle(1), rgb_at(radiance(look({0, -1, 1}, {0, 0, 0}, 9, 9)), 4, 4)) > 0.1f);
+        glm::distance(center_color(1), rgb_at(radiance(look({0, -1, 1}, {0, 0, 0}, 9, 9)), 4, 4))
+        > 0.1f);
 }
 
 // ---- where a map says so ---------------------------------------------------------------------
@@ -203,7 +204,7 @@ TextureSlot nearest(ImageId image) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: unlit, a share r of the color gives way to the surroundings"
+    ControlScene, "env_control_map: unlit, a fraction r of the color is replaced by the reflection"
                       * technique("env.control-map")) {
     const Vec3 own = {0.8f, 0.6f, 0.1f};
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Blend}) {
@@ -224,8 +225,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene,
-    "env_control_map: the same by every way of lighting" * technique("env.control-map")) {
+    ControlScene, "env_control_map: the image is the same with every light method"
+                      * technique("env.control-map")) {
     const Material material = {
         .shading = ShadingModel::Unlit,
         .base_color = {0.8f, 0.6f, 0.1f, 1},
@@ -243,7 +244,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: the map is data, its halves are two materials in one draw"
+    ControlScene, "env_control_map: the map is data: its halves are two materials in one draw call"
                       * technique("env.control-map")) {
     Material material = {
         .shading = ShadingModel::Unlit,
@@ -265,8 +266,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: lit, a share m of metal is linear between without and all"
-                      * technique("env.control-map")) {
+    ControlScene,
+    "env_control_map: lit, metalness m is linear between 0 and 1" * technique("env.control-map")) {
     shine(PointLight{.intensity = 2}, at({0.3f, 0.4f, 0.8f}));
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
         Material material = {.base_color = {0.8f, 0.6f, 0.1f, 1}, .roughness = roughness};
@@ -291,7 +292,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ControlScene, "env_control_map: with Fresnel's weight, without it and with all"
+    ControlScene, "env_control_map: head on, a dielectric reflects 4 % and a metal everything"
                       * technique("env.control-map")) {
     // Head on a dielectric mirrors 4 %; of the rest it is the color.
     const gpu::FloatImage without =

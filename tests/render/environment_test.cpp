@@ -42,7 +42,7 @@ Vec3 gathered(const layout::EnvironmentBlock& block, const Vec3& normal) {
 }
 
 struct BallScene : Scene {
-    /// A ball in these surroundings alone; its middle is seen head on.
+    /// A ball lit by this environment only, with its center facing the camera.
     gpu::FloatImage ball(const Material& material, const Environment& environment) {
         world.clear();
         world.insert_resource(environment);
@@ -54,7 +54,7 @@ struct BallScene : Scene {
 }  // namespace
 
 TEST_CASE(
-    "environment: nine harmonics give a uniform sky back exactly, others to a fifth"
+    "environment: nine harmonics reproduce a uniform sky exactly, others within a fifth"
     * technique("env.image-based-light")) {
     std::mt19937 random(2);
     std::normal_distribution<float> normal;
@@ -74,7 +74,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "environment: the table of specular albedo is the oracle's"
+    "environment: the table of specular albedo matches the oracle"
     * technique("env.image-based-light, light.microfacet")) {
     constexpr int kSize = 32;
     const std::vector<Vec2> table = make_specular_albedo(kSize);
@@ -104,7 +104,7 @@ TEST_CASE("environment: the metal-rough model returns all light of a white furna
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "environment: a white ball vanishes in a white furnace, whatever its roughness"
+    BallScene, "environment: a white ball vanishes in a white furnace, at any roughness"
                    * technique("light.microfacet")) {
     for (const float metalness : {0.0f, 1.0f}) {
         for (const float roughness : {0.1f, 0.5f, 1.0f}) {
@@ -143,7 +143,7 @@ TEST_CASE_FIXTURE(Scene, "environment: the background is the sky function, along
                     1 - (static_cast<float>(y) + 0.5f) / 16};
                 const Vec4 near = world_from_clip * Vec4(ndc, 1, 1);
                 const Vec3 direction = glm::normalize(Vec3(near) / near.w - eye);
-                if (environment.sky != SkyKind::Studio) {  // whose lamps are not to be seen
+                if (environment.sky != SkyKind::Studio) {  // whose lamps are invisible
                     CHECK(
                         glm::distance(rgb_at(image, x, y), sky_radiance(block, direction)) < 2e-3f);
                 }
@@ -170,7 +170,7 @@ TEST_CASE_FIXTURE(
                 const Vec3 ray = glm::normalize(Vec3(
                     (static_cast<float>(x) + 0.5f) / 32 - 1,
                     1 - (static_cast<float>(y) + 0.5f) / 32, -1));
-                // Of the unit ball seen from (0, 0, 2).
+                // Of the unit ball viewed from (0, 0, 2).
                 const float b = glm::dot(Vec3(0, 0, 2), ray);
                 const float under_root = b * b - 3;
                 if (under_root < 0.15f) {
@@ -188,7 +188,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(BallScene, "environment: from below, where the map is folded, no edge is seen") {
+TEST_CASE_FIXTURE(
+    BallScene, "environment: from below, where the octahedron folds, there is no visible seam") {
     for (const float roughness : {0.05f, 0.3f, 0.6f}) {
         world.clear();
         world.insert_resource(
@@ -197,7 +198,7 @@ TEST_CASE_FIXTURE(BallScene, "environment: from below, where the map is folded, 
             .base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = roughness};
         place(add(make_ball(64)), add(mirror), at({0, 0, 0}));
         const gpu::FloatImage image = radiance(look({0, -3, 0}, {0, 0, 0}, 96, 96));
-        // Its middle shows the ground straight below, where the corners of the map meet.
+        // Its center reflects the ground straight below, where the corners of the map meet.
         float low = INFINITY;
         float high = 0;
         for (int y = 46; y < 50; ++y) {
@@ -213,8 +214,8 @@ TEST_CASE_FIXTURE(BallScene, "environment: from below, where the map is folded, 
 }
 
 TEST_CASE_FIXTURE(
-    BallScene,
-    "environment: rougher mirrors blur it and keep its mean" * technique("env.image-based-light")) {
+    BallScene, "environment: rougher mirrors blur the sky and preserve its mean"
+                   * technique("env.image-based-light")) {
     const auto mean_and_spread = [&](float roughness) {
         const gpu::FloatImage image = ball(
             {.base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = roughness},
@@ -248,7 +249,7 @@ TEST_CASE_FIXTURE(BallScene, "environment: the ground lights from below, the sky
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "environment: the sun's disc stands where the first directional light comes from") {
+    Scene, "environment: the sun's disc is in the direction of the first directional light") {
     world.insert_resource(Environment{});
     const Vec3 sun = glm::normalize(Vec3(0.2f, 0.3f, -1));
     shine(DirectionalLight{.illuminance = 3}, look_at(sun, {0, 0, 0}));

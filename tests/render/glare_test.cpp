@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSide = 128;
 
-/// What the pass adds to black with one pixel of light in the middle of four that are one
+/// What the pass adds to black with one pixel of light in the center of four that are one
 /// texel of half the size; `second` is the light of another one in a corner.
 gpu::FloatImage
 glare_of(float light, const Glare& glare, float second = 0, const Vec3& color = {0, 1, 0}) {
@@ -55,7 +55,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "glare: the light added grows with what is above the threshold"
+    RenderTest, "glare: the added light grows with the luminance above the threshold"
                     * technique("post.glare-heat-haze")) {
     const Glare glare = {.strength = 0.5f, .threshold = 1, .length = 0.4f};
     for (const double luminance : {2.0, 3.0, 9.0}) {
@@ -92,7 +92,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "glare: of white light, red goes farther than green, and blue less far") {
+    RenderTest, "glare: of white light, red spreads farther than green, and blue less") {
     const gpu::FloatImage made =
         glare_of(1000, {.strength = 1, .blades = 4, .length = 0.8f}, 0, Vec3(1));
     double sums[3] = {};
@@ -122,7 +122,7 @@ TEST_CASE_FIXTURE(RenderTest, "glare: NaN never spreads") {
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "glare: switched off, it adds no pass and changes no bit") {
+TEST_CASE_FIXTURE(Scene, "glare: switched off, it adds no pass, and the image is bit-identical") {
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {9, 9, 9, 1}}), at({0, 0, 0}));

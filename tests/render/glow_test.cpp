@@ -50,14 +50,14 @@ glowing(const LightImage& picture, const Glow& glow, const GlowPass& pass = shar
     return picture_of(gpu::read_floats(*graph.texture(made)));
 }
 
-/// A pixel's worth of light at `place`, spread over the pixels that it covers.
-LightImage dot_at(int width, int height, const glm::dvec2& place, double light) {
+/// A pixel's worth of light at `position`, spread over the pixels that it covers.
+LightImage dot_at(int width, int height, const glm::dvec2& position, double light) {
     LightImage picture = oracle::make_black_image(width, height);
     for (int y = 0; y < height; ++y) {
-        const double down = std::max(0.0, 1 - std::abs(y + 0.5 - place.y));
+        const double down = std::max(0.0, 1 - std::abs(y + 0.5 - position.y));
         for (int x = 0; down > 0 && x < width; ++x) {
-            const double share = down * std::max(0.0, 1 - std::abs(x + 0.5 - place.x));
-            picture.pixels[y * width + x] = glm::dvec3(share * light);
+            const double weight = down * std::max(0.0, 1 - std::abs(x + 0.5 - position.x));
+            picture.pixels[y * width + x] = glm::dvec3(weight * light);
         }
     }
     return picture;
@@ -85,7 +85,7 @@ std::string pass_names() {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Scene, "glow: switched off, it adds no pass and changes no bit") {
+TEST_CASE_FIXTURE(Scene, "glow: switched off, it adds no pass, and the image is bit-identical") {
     place_objects(*this);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 61, 48);
     static_cast<void>(draw(view));  // what surrounds the scene is mirrored once
@@ -101,7 +101,7 @@ TEST_CASE_FIXTURE(Scene, "glow: switched off, it adds no pass and changes no bit
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "glow: an image of many samples glows once, with the sum of its light") {
+TEST_CASE_FIXTURE(Scene, "glow: an accumulated image glows once, with the mean of its samples") {
     place_objects(*this);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 61, 48);
     const auto accumulated = [&] {
@@ -116,7 +116,7 @@ TEST_CASE_FIXTURE(Scene, "glow: an image of many samples glows once, with the su
     CHECK(pass_names().find("accumulate") == std::string::npos);  // of the last frame alone
 }
 
-TEST_CASE("glow: the weights of the levels sum to 1, and the last one comes in gradually") {
+TEST_CASE("glow: the weights of the levels sum to 1, and the last level fades in") {
     for (const float radius : {0.001f, 0.01f, 0.1f, 0.15f, 1.0f}) {
         const std::vector<float> weights = glow_weights({.radius = radius}, 640, 360);
         CHECK(std::accumulate(weights.begin(), weights.end(), 0.0) == test::near(1).epsilon(1e-6));
@@ -135,19 +135,18 @@ TEST_CASE("glow: the weights of the levels sum to 1, and the last one comes in g
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "glow: no light is made or lost, at any size, in corners neither" * technique("post.glow")) {
+    RenderTest, "glow: light is conserved at any size, also in corners" * technique("post.glow")) {
     for (const IVec2& size :
          {IVec2(64, 48), IVec2(61, 48), IVec2(33, 47), IVec2(1, 1), IVec2(2, 5), IVec2(1, 40)}) {
-        for (const glm::dvec2& share :
+        for (const glm::dvec2& weight :
              {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0.3, 1), glm::dvec2(0.45, 0.6)}) {
-            const glm::dvec2 place = glm::dvec2(0.5) + glm::floor(share * glm::dvec2(size - 1));
+            const glm::dvec2 position = glm::dvec2(0.5) + glm::floor(weight * glm::dvec2(size - 1));
             CAPTURE(size.x);
             CAPTURE(size.y);
-            CAPTURE(place.x);
-            CAPTURE(place.y);
+            CAPTURE(position.x);
+            CAPTURE(position.y);
             const LightImage made =
-                glowing(dot_at(size.x, size.y, place, 20), {.strength = 1, .radius = 0.4f});
+                glowing(dot_at(size.x, size.y, position, 20), {.strength = 1, .radius = 0.4f});
             CHECK(green_sum(made) == test::near(20).epsilon(1e-4));
         }
     }
@@ -167,14 +166,14 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a uniform image stays as it is") {
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: steps between sizes of 2 : 1 are those between any sizes") {
+TEST_CASE_FIXTURE(RenderTest, "glow: the steps for sizes of 2 : 1 equal those for any size") {
     GlowPass general = shared_pass();
     general.down_twice = general.down;
     general.up_twice = general.up;
     const Glow glow = {.strength = 1, .radius = 0.4f, .firefly = 0};
-    for (const glm::dvec2& place :
+    for (const glm::dvec2& position :
          {glm::dvec2(0.5, 0.5), glm::dvec2(17.5, 30), glm::dvec2(63, 20.5)}) {
-        const LightImage dot = dot_at(64, 48, place, 1000);
+        const LightImage dot = dot_at(64, 48, position, 1000);
         const LightImage made = glowing(dot, glow);
         const LightImage expected = glowing(dot, glow, general);
         for (std::size_t i = 0; i < made.pixels.size(); ++i) {
@@ -184,21 +183,21 @@ TEST_CASE_FIXTURE(RenderTest, "glow: steps between sizes of 2 : 1 are those betw
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "glow: a point becomes round, within 5 % at any radius and place" * technique("post.glow")) {
+    RenderTest, "glow: a point becomes a round halo, within 5 % at any radius and position"
+                    * technique("post.glow")) {
     constexpr int kHeight = 240;
     const Glow glow = {.strength = 1, .radius = 0.1f, .firefly = 0};
-    for (const glm::dvec2& place :
+    for (const glm::dvec2& position :
          {glm::dvec2(160.5, 120.5), glm::dvec2(163.5, 125.5), glm::dvec2(170.5, 113.5)}) {
-        const LightImage made = glowing(dot_at(320, kHeight, place, 100), glow);
+        const LightImage made = glowing(dot_at(320, kHeight, position, 100), glow);
         for (const double radius : {1.5, 3.0, 6.0, 9.0, 12.0, 18.0, 24.0}) {
             CAPTURE(radius);
-            CHECK(oracle::rotational_spread(made, place, radius) < 0.05);
+            CHECK(oracle::rotational_spread(made, position, radius) < 0.05);
         }
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: light falls with the power of the distance that was asked") {
+TEST_CASE_FIXTURE(RenderTest, "glow: light falls off with the requested power of the distance") {
     for (const float falloff : {2.0f, 2.4f, 3.0f}) {
         const LightImage made = glowing(
             dot_at(320, 240, {160.5, 120.5}, 100),
@@ -210,8 +209,8 @@ TEST_CASE_FIXTURE(RenderTest, "glow: light falls with the power of the distance 
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "glow: a pixel's light that moves by eighths does not flicker" * technique("post.glow")) {
+    RenderTest, "glow: light of a pixel that moves by an eighth of a pixel does not flicker"
+                    * technique("post.glow")) {
     for (const double light : {1.0, 30.0, 5000.0}) {
         double sum = 0;
         double squares = 0;
@@ -231,7 +230,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a firefly's light stays in its pixel instea
     const Glow glow = {.strength = 0.5f, .firefly = 100};
     const auto spread = [&](double light) {
         const LightImage made = glowing(dot_at(96, 64, {40.5, 30.5}, light), glow);
-        return 1 - made.at(40, 30).y / light;  // share that left the pixel
+        return 1 - made.at(40, 30).y / light;  // fraction that left the pixel
     };
     CHECK(spread(1) > 0.45);
     CHECK(spread(1e4) < 0.1 * spread(1));
@@ -268,8 +267,8 @@ TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread" * technique(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest,
-    "glow: it is the oracle's convolution, within 2 % of the brightest" * technique("post.glow")) {
+    RenderTest, "glow: it matches the oracle's convolution, within 2 % of the maximum"
+                    * technique("post.glow")) {
     LightImage picture = dot_at(160, 96, {50.5, 40.5}, 40);
     for (int y = 60; y < 80; ++y) {
         for (int x = 100; x < 150; ++x) {
@@ -292,7 +291,7 @@ TEST_CASE_FIXTURE(
 // ---- the emissive mask
 
 TEST_CASE_FIXTURE(
-    Scene, "glow: a mask without lamps is black, and changes no bit of the image"
+    Scene, "glow: a mask without lamps is black, and the image is bit-identical"
                * technique("post.effect-pipeline, post.glow")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     shine(PointLight{.intensity = 5}, at({0, 0, 1}));
@@ -304,8 +303,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene,
-    "glow: a lamp behind a black wall adds nothing, by any light method" * technique("post.glow")) {
+    Scene, "glow: a lamp behind a black wall adds nothing, with any light method"
+               * technique("post.glow")) {
     place_objects(*this, {9, 4, 2}, -1);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 40, 32);
     const gpu::FloatImage bare = radiance(view);
@@ -323,7 +322,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "glow: a mask adds the lamp's light once more, twice as much for twice"
+    Scene, "glow: a mask adds the lamp's light once, and twice as much at twice the strength"
                * technique("post.glow")) {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 80, 64);
     const auto added = [&](const Vec3& emission, float strength) {

@@ -20,8 +20,8 @@ constexpr Vec3 kEmission = {3, 2, 1};
 struct FogScene : Scene {
     FogScene() { world.insert_resource(FrameTime{}); }
 
-    /// A square that hides the view toward `target`, and how it looks from `eye` in its middle.
-    Vec3 seen_through(const Vec3& eye, const Vec3& target, float opacity = 1) {
+    /// The center pixel of a square that covers the view from `eye` toward `target`.
+    Vec3 through_pane(const Vec3& eye, const Vec3& target, float opacity = 1) {
         const Vec3 z = glm::normalize(eye - target);
         const Vec3 x = glm::normalize(glm::cross(Vec3(0, 0, 1) + 0.1f * Vec3(0, 1, 0), z));
         const Vec3 y = glm::cross(z, x);
@@ -38,21 +38,21 @@ struct FogScene : Scene {
                 .double_sided = true,
                 .base_color = Vec4(kEmission / 3.0f, opacity)}),
             world_from_square);
-        const Vec3 seen = middle(eye, target);
+        const Vec3 through = center_color(eye, target);
         world.destroy(square);
-        return seen;
+        return through;
     }
     /// Discs of 2 m that give off `color`.
-    void add_particles(std::span<const Vec3> places, const Vec3& color) {
+    void add_particles(std::span<const Vec3> positions, const Vec3& color) {
         ParticleLook look;
         look.size = 2;
         look.colors = {{.at = 0, .color = color, .opacity = 1}};
         look.emission = 1;
         look.lit = 0;
         look.softness = 0;
-        world.create(ParticleEmitter{}, look, pool_at(places));
+        world.create(ParticleEmitter{}, look, pool_at(positions));
     }
-    Vec3 middle(const Vec3& eye, const Vec3& target) {
+    Vec3 center_color(const Vec3& eye, const Vec3& target) {
         return rgb_at(radiance(look(eye, target, 33, 33)), 16, 16);
     }
 };
@@ -76,7 +76,7 @@ March march(const HeightFog& fog, const Vec3& from, const Vec3& to) {
     return sum;
 }
 
-const std::array kWays = {
+const std::array kRays = {
     std::array{Vec3(0, 1, 0), Vec3(0, 1, -8)},     // level
     std::array{Vec3(0, 0, 0), Vec3(20, 40, -30)},  // up, through all of it
     std::array{Vec3(2, 30, 1), Vec3(0, -2, -40)},  // down
@@ -85,24 +85,23 @@ const std::array kWays = {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FogScene, "height fog: what is seen through it is what a ray march finds"
-                  * technique("light.height-fog")) {
+    FogScene, "height fog: the closed form matches a ray march" * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.05f, .base = 1, .scale_height = 7, .ambient = {0.2f, 0.4f, 0.8f}, .sun = 0};
-    for (const auto& [eye, target] : kWays) {
+    for (const auto& [eye, target] : kRays) {
         CAPTURE(target);
         world.remove_resource<HeightFog>();
-        const Vec3 clear = seen_through(eye, target);
-        const Vec3 clear_pane = seen_through(eye, target, 0.5f);
+        const Vec3 clear = through_pane(eye, target);
+        const Vec3 clear_pane = through_pane(eye, target, 0.5f);
         world.insert_resource(HeightFog{fog});
         const March truth = march(fog, eye, target);
-        const Vec3 seen = seen_through(eye, target);
-        const Vec3 pane = seen_through(eye, target, 0.5f);
-        const Vec3 behind = middle(eye, target);  // the fog as far as the sky
+        const Vec3 through = through_pane(eye, target);
+        const Vec3 pane = through_pane(eye, target, 0.5f);
+        const Vec3 behind = center_color(eye, target);  // the fog up to the sky
         for (int i = 0; i < 3; ++i) {
             CHECK(clear[i] > 0.3f);
             CHECK(
-                seen[i]
+                through[i]
                 == test::near(clear[i] * truth.passed + fog.ambient[i] * truth.added)
                        .epsilon(1e-3));
             // Half of the pane lies in front of what is behind it.
@@ -116,17 +115,19 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(FogScene, "height fog: the sky is seen through what is left of it above") {
+TEST_CASE_FIXTURE(FogScene, "height fog: the sky is dimmed by the fog above the camera") {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {2, 2, 2}});
     world.insert_resource(
         HeightFog{.density = 0.02f, .base = 0, .scale_height = 25, .ambient = {1, 1, 1}, .sun = 0});
     const double up = std::exp(-0.02 * 25 * std::exp(-5.0 / 25));
-    CHECK(middle({0, 5, 0}, {0, 6, 0.001f}).x == test::near(2 * up + (1 - up)).epsilon(1e-3));
-    CHECK(middle({0, 5, 0}, {0, 5, -1}).x == test::near(1).epsilon(1e-3));  // the horizon is gone
+    CHECK(center_color({0, 5, 0}, {0, 6, 0.001f}).x == test::near(2 * up + (1 - up)).epsilon(1e-3));
+    CHECK(
+        center_color({0, 5, 0}, {0, 5, -1}).x
+        == test::near(1).epsilon(1e-3));  // the horizon is invisible
 }
 
 TEST_CASE_FIXTURE(
-    FogScene, "height fog: in a furnace of its own radiance nothing can be seen"
+    FogScene, "height fog: in a furnace of its own radiance everything vanishes"
                   * technique("light.height-fog")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
     add_particles(std::array{Vec3(0.3f, 1, -4), Vec3(-0.5f, 1.4f, -9)}, Vec3(1));
@@ -146,31 +147,32 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     FogScene,
-    "height fog: a particle has the fog that is in front of it" * technique("light.height-fog")) {
+    "height fog: a particle is covered by the fog in front of it" * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.1f, .base = 0, .scale_height = 6, .ambient = {0.5f, 0.5f, 0.5f}, .sun = 0};
     const Vec3 eye = {0, 1, 0};
     const Vec3 there = {0, 3, -7};
     add_particles(std::array{there}, Vec3(2));
-    const float clear = middle(eye, there).x;
+    const float clear = center_color(eye, there).x;
     CHECK(clear > 1);
     world.insert_resource(HeightFog{fog});
     const March truth = march(fog, eye, there);
     CHECK(
-        middle(eye, there).x == test::near(clear * truth.passed + 0.5 * truth.added).epsilon(5e-3));
+        center_color(eye, there).x
+        == test::near(clear * truth.passed + 0.5 * truth.added).epsilon(5e-3));
 }
 
 TEST_CASE_FIXTURE(
-    FogScene, "height fog: glass adds the fog before it to what it mirrors alone"
+    FogScene, "height fog: glass adds the fog in front of it to its reflection only"
                   * technique("light.height-fog")) {
     const HeightFog fog = {
         .density = 0.06f, .base = 0, .scale_height = 1e5f, .ambient = {0.5f, 0.5f, 0.5f}, .sun = 0};
     const Vec3 eye = {0, 0, 0};
     const Vec3 there = {0, 0, -20};
     const Vec3 pane = {0, 0, -8};
-    const Vec3 clear = seen_through(eye, there);
+    const Vec3 clear = through_pane(eye, there);
     world.insert_resource(HeightFog{fog});
-    const Vec3 foggy = seen_through(eye, there);
+    const Vec3 foggy = through_pane(eye, there);
     const Entity glass = place(
         add(make_square()),
         add(Material{
@@ -179,9 +181,9 @@ TEST_CASE_FIXTURE(
             .roughness = 0,
             .transmission = 1}),
         at(pane));
-    const Vec3 both = seen_through(eye, there);
+    const Vec3 both = through_pane(eye, there);
     world.remove_resource<HeightFog>();
-    const double passed = seen_through(eye, there).x / clear.x;  // nothing is mirrored but the dark
+    const double passed = through_pane(eye, there).x / clear.x;  // nothing is mirrored but the dark
     world.destroy(glass);
     CHECK(passed > 0.85);
     CHECK(passed < 0.99);
@@ -194,7 +196,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(FogScene, "height fog: toward the sun it scatters what the phase function says") {
+TEST_CASE_FIXTURE(FogScene, "height fog: it scatters sunlight by the phase function") {
     world.create(
         DirectionalLight{},
         WorldTransform{
@@ -210,9 +212,9 @@ TEST_CASE_FIXTURE(FogScene, "height fog: toward the sun it scatters what the pha
     const auto phase = [&](double cosine) {
         return (1 - g * g) / (4 * 3.14159265358979 * std::pow(1 + g * g - 2 * g * cosine, 1.5));
     };
-    CHECK(middle({0, 0, 0}, {0, 0, -1}).x == test::near(3 * phase(1)).epsilon(1e-3));
-    CHECK(middle({0, 0, 0}, {1, 0, 0}).x == test::near(3 * phase(0)).epsilon(1e-3));
-    CHECK(middle({0, 0, 0}, {0, 0, 1}).x == test::near(3 * phase(-1)).epsilon(1e-3));
+    CHECK(center_color({0, 0, 0}, {0, 0, -1}).x == test::near(3 * phase(1)).epsilon(1e-3));
+    CHECK(center_color({0, 0, 0}, {1, 0, 0}).x == test::near(3 * phase(0)).epsilon(1e-3));
+    CHECK(center_color({0, 0, 0}, {0, 0, 1}).x == test::near(3 * phase(-1)).epsilon(1e-3));
 }
 
 }  // namespace limn::test::height_fog_test

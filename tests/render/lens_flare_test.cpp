@@ -121,7 +121,7 @@ double sensor_place() {
 
 }  // namespace
 
-TEST_CASE("lens flare: the double Gauss has the focal length that its patent says") {
+TEST_CASE("lens flare: the double Gauss has the focal length of its patent") {
     const LensFocus focus = focus_of(double_gauss());
     CHECK(focus.focal_length == near(50).epsilon(0.01));
     for (const double y : {0.5, 3.0}) {
@@ -186,7 +186,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lens flare: a quarter wave reflects least where it is made for, as closed forms say") {
+TEST_CASE("lens flare: a quarter-wave layer reflects least at its wavelength, as closed forms do") {
     const double n1 = 1.38;
     const double n2 = 1.67;
     const double least = (n2 - n1 * n1) / (n2 + n1 * n1);
@@ -269,7 +269,7 @@ double light_of(const FlareSprite& sprite, int blades) {
 }  // namespace
 
 TEST_CASE(
-    "lens flare: the light of a ghost is what enters the lens times the ghost's strength"
+    "lens flare: a ghost's light is that entering the lens times the ghost's strength"
     * technique("engine.lens-flare")) {
     // From the axis, all rims are concentric and the tightest one decides what enters; at f/8 no
     // two are so alike that the corners of one are outside the other. The pupil gathers pi / (4
@@ -299,7 +299,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lens flare: ghosts are where traced rays see the center of the tightest rim") {
+TEST_CASE("lens flare: ghosts are where traced rays image the center of the tightest rim") {
     const LensFlare flare = {.f_number = 8, .blades = 0, .ghosts = 64, .source_size = 0};
     const double f = focus_of(double_gauss()).focal_length;
     const double sensor = sensor_place();
@@ -339,7 +339,7 @@ TEST_CASE("lens flare: ghosts are where traced rays see the center of the tighte
     }
 }
 
-TEST_CASE("lens flare: the brightest ghosts are kept, the same ones wherever the light is") {
+TEST_CASE("lens flare: the brightest ghosts are kept, the same ones at any light position") {
     const FlareLight light = {.tangent = {0.2f, 0.1f}, .illuminance = {1, 1, 1}};
     const auto all = make_flare_sprites(ghosts_kept(64), light, kTangent, 720);
     const auto some = make_flare_sprites(ghosts_kept(7), light, kTangent, 720);
@@ -365,21 +365,21 @@ TEST_CASE(
         .mode = LensFlareMode::Billboards,
         .source_size = 0.02f,
         .elements = {{0, 0.1f}, {0.25f, 0.1f}, {0.5f, 0.1f}, {0.75f, 0.1f}, {1, 0.1f}}};
-    const Vec2 place = {0.3f, -0.12f};
+    const Vec2 position = {0.3f, -0.12f};
     const auto sprites_at = [&](const Vec2& tangent) {
         return make_flare_sprites(
             flare, {.tangent = tangent, .illuminance = {1, 1, 1}}, kTangent, 720);
     };
-    const auto sprites = sprites_at(place);
+    const auto sprites = sprites_at(position);
     REQUIRE(sprites.size() == 5);
     const float expected[] = {1, 0.5f, 0, -0.5f, -1};
-    const auto mirrored = sprites_at(-place);
+    const auto mirrored = sprites_at(-position);
     for (std::size_t i = 0; i < 5; ++i) {
         // As soft as the light is wide there, but by no less than three pixels.
         const float soft = std::max(std::abs(expected[i]) * 0.02f, 6.0f / 720);
         CHECK(sprites[i].softness == near(soft * kTangent));
         for (int axis = 0; axis < 2; ++axis) {
-            CHECK(sprites[i].center[axis] == near(expected[i] * place[axis]).scale(1e-3));
+            CHECK(sprites[i].center[axis] == near(expected[i] * position[axis]).scale(1e-3));
             CHECK(mirrored[i].center[axis] == near(sprites[4 - i].center[axis]).scale(1e-3));
         }
     }
@@ -441,7 +441,7 @@ glm::dvec2 center_of_light(const gpu::FloatImage& image) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FlareScene, "lens flare: ghosts are drawn where the lens says, to a pixel"
+    FlareScene, "lens flare: ghosts are drawn at their computed positions, within a pixel"
                     * technique("engine.lens-flare")) {
     const Vec2 tangent = {0.35f, 0.2f};
     sun_at(tangent);
@@ -468,9 +468,9 @@ TEST_CASE_FIXTURE(
                 .back();
         // Whole ghosts of one passage only: their center is that of their light.
         const Vec4& front = sprite.rims[0];
-        const Vec2 reach = glm::abs(sprite.center) + sprite.radius;
-        const bool whole = sprite.rims[2].w < 0 && reach.x < view.tangent.x
-                           && reach.y < view.tangent.y
+        const Vec2 extent = glm::abs(sprite.center) + sprite.radius;
+        const bool whole = sprite.rims[2].w < 0 && extent.x < view.tangent.x
+                           && extent.y < view.tangent.y
                            && glm::length(front.x * sprite.center + Vec2(front.y, front.z))
                                       + std::abs(front.x) * sprite.radius
                                   < 1;
@@ -489,7 +489,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FlareScene, "lens flare: none of a hidden light, half of a half hidden one"
+    FlareScene, "lens flare: an occluded light has none, a half occluded one half of it"
                     * technique("engine.lens-flare")) {
     const Vec2 tangent = {-0.3f, 0.25f};
     flare().source_size = 0.12f;
@@ -518,7 +518,8 @@ TEST_CASE_FIXTURE(
     CHECK(light() == 0);
 }
 
-TEST_CASE_FIXTURE(FlareScene, "lens flare: a lamp is not hidden by its own glass, but by a wall") {
+TEST_CASE_FIXTURE(
+    FlareScene, "lens flare: a lamp is occluded by a wall, but not by its own glass") {
     flare().mode = LensFlareMode::Billboards;
     flare().elements = {{1.0f, 0.2f, Vec3(0.01f)}};
     world.create(PointLight{.intensity = 100}, WorldTransform{at({0.5f, 0.5f, -1.2f})});
@@ -539,7 +540,8 @@ TEST_CASE_FIXTURE(FlareScene, "lens flare: a lamp is not hidden by its own glass
     CHECK(light() > 2 * free);
 }
 
-TEST_CASE_FIXTURE(FlareScene, "lens flare: none without it, and no NaN whatever it is") {
+TEST_CASE_FIXTURE(
+    FlareScene, "lens flare: without it there is no pass, and no NaN with any settings") {
     sun_at({0.2f, 0.1f});
     flare().strength = 0;
     CHECK(light() == 0);

@@ -46,7 +46,7 @@ constexpr MotionBlurMode kMotionBlurModes[] = {
     MotionBlurMode::Reconstruct, MotionBlurMode::Accumulate, MotionBlurMode::Camera,
     MotionBlurMode::Flow, MotionBlurMode::Stretch};
 
-/// A bright ball that goes by before a wall, seen by a camera that walks.
+/// A bright ball that moves in front of a wall, in the view of a moving camera.
 class Moving : public Scene {
   public:
     Moving() {
@@ -87,15 +87,15 @@ std::vector<LensEffect> lens_effects() {
     effects.push_back({"glare", "glare", [](Moving& scene, RenderView&, float strength) {
                            scene.world.insert_resource(Glare{.strength = strength});
                        }});
-    const Affine middle = at({0, 0, -0.5f});
-    effects.push_back({"shock ring", "ripple", [middle](Moving& scene, RenderView&, float s) {
+    const Affine center = at({0, 0, -0.5f});
+    effects.push_back({"shock ring", "ripple", [center](Moving& scene, RenderView&, float s) {
                            scene.world.create(
                                RippleRing{.age = 0.1f, .amplitude = 0.1f * s},
-                               WorldTransform{middle});
+                               WorldTransform{center});
                        }});
-    effects.push_back({"hot air", "ripple", [middle](Moving& scene, RenderView&, float s) {
+    effects.push_back({"hot air", "ripple", [center](Moving& scene, RenderView&, float s) {
                            scene.world.create(
-                               HeatHaze{.strength = 0.1f * s}, WorldTransform{middle});
+                               HeatHaze{.strength = 0.1f * s}, WorldTransform{center});
                        }});
     effects.push_back({"rain", "ripple", [](Moving& scene, RenderView&, float strength) {
                            scene.world.insert_resource(LensRain{.amount = strength});
@@ -195,8 +195,7 @@ void try_numbers(const std::string& name, const Setting& setting, const Use& use
 }  // namespace
 
 TEST_CASE(
-    "lens: whatever number any setting has, the image is finite"
-    * technique("post.effect-pipeline")) {
+    "lens: the image is finite with any value of any setting" * technique("post.effect-pipeline")) {
     const auto resource = [](Moving& scene, RenderView&, const auto& setting) {
         scene.world.insert_resource(setting);
         return Entity{};
@@ -234,7 +233,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lens: each effect that is turned off adds no pass and changes no bit of the display"
+    "lens: an effect that is off adds no pass, and the display image is bit-identical"
     * technique("post.effect-pipeline, post.glare-heat-haze")) {
     Moving plain;
     static_cast<void>(plain.draw(plain.seen()));  // what surrounds a scene is mirrored once
@@ -256,7 +255,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lens: what is negative or NaN is 0") {
+TEST_CASE("lens: negative and NaN radiance becomes 0") {
     Moving plain;
     const gpu::FloatImage without = plain.radiance(plain.seen());
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -278,7 +277,7 @@ TEST_CASE("lens: what is negative or NaN is 0") {
     }
 }
 
-TEST_CASE("lens: each effect is sound in an image 16384 pixels wide") {
+TEST_CASE("lens: each effect works in an image 16384 pixels wide") {
     for (const LensEffect& effect : lens_effects()) {
         CAPTURE(effect.name);
         Moving scene;
@@ -291,7 +290,7 @@ TEST_CASE("lens: each effect is sound in an image 16384 pixels wide") {
     }
 }
 
-TEST_CASE("lens: whatever moves by NaN or a billion meters, the image is finite") {
+TEST_CASE("lens: the image is finite when objects move by NaN or a billion meters") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const LensEffect& effect : lens_effects()) {
         for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e9f, 1e30f}) {
@@ -308,7 +307,7 @@ TEST_CASE("lens: whatever moves by NaN or a billion meters, the image is finite"
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "lens: what nobody asks for has neither a pass nor a target"
+    Scene, "lens: effects that are not requested have neither a pass nor a target"
                * technique("post.effect-pipeline")) {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     static_cast<void>(draw(look({0, 0, 1}, {0, 0, 0}, 32, 24)));

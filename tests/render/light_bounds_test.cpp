@@ -47,13 +47,13 @@ TEST_CASE(
     CHECK(aside.low == test::near(0.4734014).epsilon(1e-5));
     CHECK(aside.high == test::near(1.1265986).epsilon(1e-5));
     for (const float k : {aside.low, aside.high}) {
-        // The line x = -k z passes the center at the distance of the radius.
+        // The line x = -k z passes the center at the radius.
         CHECK(std::abs(3 - k * 4) / std::sqrt(1 + k * k) == test::near(1).epsilon(1e-4));
     }
 }
 
 TEST_CASE(
-    "light_bounds: every visible point of a sphere lies in the rectangle, which is tight"
+    "light_bounds: every visible point of a sphere is in the rectangle, which is tight"
     * technique("shadow.light-scissor")) {
     Random random;
     int visible_points = 0;
@@ -113,7 +113,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "light_bounds: a light behind the camera or beside the image has empty bounds"
+    "light_bounds: a light behind the camera or off screen has an empty rectangle"
     * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     CHECK(is_empty(light_bounds(view, {0, 0, 3}, 1)));
@@ -123,7 +123,7 @@ TEST_CASE(
     CHECK_FALSE(is_empty(light_bounds(view, {0, 0, -5}, 1)));
 }
 
-TEST_CASE("light_bounds: growing gives the tight rectangle around both, in either order") {
+TEST_CASE("light_bounds: grow gives the tight union of two rectangles, in either order") {
     const LightBounds low = {2, 3, 4, 5, 0.2f, 0.4f};
     const LightBounds high = {10, 1, 6, 20, 0.1f, 0.3f};
     const LightBounds both = {2, 1, 14, 20, 0.1f, 0.4f};
@@ -139,7 +139,7 @@ TEST_CASE("light_bounds: growing gives the tight rectangle around both, in eithe
 }
 
 TEST_CASE(
-    "light_bounds: depths are those of the nearest and the farthest point"
+    "light_bounds: the depth range is that of the nearest and the farthest point"
     * technique("shadow.depth-bounds")) {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1}, 1.0f);
     const LightBounds bounds = light_bounds(view, {0, 0, -10}, 1);

@@ -26,12 +26,12 @@ bool has_pass(std::string_view name) {
 TEST_CASE("motion blur: the oracle's box and bar agree with each other") {
     std::vector<double> row(40, 0.0);
     std::fill(row.begin() + 12, row.begin() + 25, 1.0);
-    for (const double way : {0.0, 0.5, 3.0, 7.0, 20.0}) {
-        const std::vector<double> filtered = oracle::box_filter(row, way);
+    for (const double motion : {0.0, 0.5, 3.0, 7.0, 20.0}) {
+        const std::vector<double> filtered = oracle::box_filter(row, motion);
         double sum = 0;
         for (int x = 0; x < 40; ++x) {
             CAPTURE(x);
-            CHECK(filtered[x] == test::near(oracle::bar_coverage(x + 0.5, 12, 25, way)));
+            CHECK(filtered[x] == test::near(oracle::bar_coverage(x + 0.5, 12, 25, motion)));
             sum += filtered[x];
         }
         CHECK(sum == test::near(13));
@@ -40,7 +40,8 @@ TEST_CASE("motion blur: the oracle's box and bar agree with each other") {
     CHECK(oracle::exposure_sample_time(1, 2, 180) == test::near(0.125));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes no bit") {
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: a shutter of 0 adds no pass, and the image is bit-identical") {
     bar(unlit({1, 0.5f, 0.2f}), 20, 40, 12);
     const gpu::FloatImage plain = picture();
     open(0);
@@ -52,7 +53,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: where nothing moves, no bit changes"
+    Shutter, "motion blur: where nothing moves, the image is bit-identical"
                  * technique("post.motion-blur-reconstruct")) {
     bar(unlit({1, 0.5f, 0.2f}), 20, 40, 0);
     bar(unlit({0.1f, 0.7f, 0.2f}), 10, 30, 0, -0.5f);
@@ -70,7 +71,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: an image of one color keeps it, whatever moves") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: an image of one color keeps it with any motion") {
     const Vec3 color = {0.3f, 0.6f, 0.9f};
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = color});
     const MaterialId same = unlit(color);
@@ -87,8 +88,8 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: an image of one color keeps it, whateve
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: a plane that goes by is a box filter of it"
-                 * technique("post.motion-blur-reconstruct")) {
+    Shutter,
+    "motion blur: a moving plane is box filtered" * technique("post.motion-blur-reconstruct")) {
     // Bars of many widths side by side that all move alike.
     float begin = -40;
     for (int i = 0; begin < 110; ++i) {
@@ -114,28 +115,29 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: a bar over the sky covers each pixel for its share of the exposure") {
+    Shutter,
+    "motion blur: a bar in front of the sky covers each pixel for its part of the exposure") {
     bar(unlit({1, 1, 1}), 22, 42, 16);
     for (const float shutter : {180.0f, 360.0f}) {
         open(shutter);
         const gpu::FloatImage blurred = picture();
-        const double way = 16.0 * shutter / 360;
+        const double motion = 16.0 * shutter / 360;
         for (int x = 0; x < kSize; ++x) {
             CAPTURE(x);
-            const double want = oracle::bar_coverage(x + 0.5, 22, 42, way);
+            const double want = oracle::bar_coverage(x + 0.5, 22, 42, motion);
             CHECK(std::abs(blurred.at(x, 32, 0) - want) < 0.07);
         }
         // Half of the smear lies outside the silhouette, on either side alike.
         CHECK(blurred.at(22 - 1, 32, 0) > 0.3);
         CHECK(blurred.at(42, 32, 0) > 0.3);
-        CHECK(blurred.at(22 - static_cast<int>(way / 2) - 1, 32, 0) == 0.0f);
-        CHECK(blurred.at(42 + static_cast<int>(way / 2), 32, 0) == 0.0f);
+        CHECK(blurred.at(22 - static_cast<int>(motion / 2) - 1, 32, 0) == 0.0f);
+        CHECK(blurred.at(42 + static_cast<int>(motion / 2), 32, 0) == 0.0f);
         CHECK(sum_of(blurred, 0) == test::near(sum_of(sharp(), 0)).epsilon(0.02));
     }
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: behind a moving bar the background comes back"
+    Shutter, "motion blur: behind a moving bar the background reappears"
                  * technique("post.motion-blur-reconstruct")) {
     const Vec3 front = {0.9f, 0.1f, 0.1f};
     const Vec3 back = {0.1f, 0.5f, 0.9f};
@@ -145,14 +147,14 @@ TEST_CASE_FIXTURE(
     const gpu::FloatImage blurred = picture();
     for (int x = 0; x < kSize; ++x) {
         CAPTURE(x);
-        const auto share = static_cast<float>(oracle::bar_coverage(x + 0.5, 20, 44, 12));
-        const Vec3 want = share * front + (1 - share) * back;
+        const auto coverage = static_cast<float>(oracle::bar_coverage(x + 0.5, 20, 44, 12));
+        const Vec3 want = coverage * front + (1 - coverage) * back;
         CHECK(glm::distance(rgb_at(blurred, x, 32), want) < 0.09f);
     }
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: a still object before what moves is neither touched nor a halo") {
+    Shutter, "motion blur: a static object in front of a moving one neither changes nor bleeds") {
     bar(unlit({0.1f, 0.2f, 0.7f}), -60, 120, 18, -2);
     bar(unlit({0.9f, 0.8f, 0.1f}), 28, 36, 0);
     open(360);
@@ -161,7 +163,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: things of different depth that move alike stay one image") {
+    Shutter, "motion blur: objects at different depths with equal motion stay one layer") {
     bar(unlit({0, 0, 1}), -60, 120, 10, -1);
     bar(unlit({1, 0, 0}), 24, 40, 10);
     open(360);
@@ -174,17 +176,17 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: of two things that cross, each smears along its own way"
+    Shutter, "motion blur: of two crossing objects, each blurs along its own motion"
                  * technique("post.motion-blur-reconstruct")) {
     // Squares of 12 px side by side; the left one goes 16 px to the right, the other 12 px up.
-    const auto move = [&](const Vec2& middle, const Vec2& way) {
+    const auto move = [&](const Vec2& center, const Vec2& motion) {
         const auto pose = [](const Vec2& pixel) {
             return affine_from(
                 Vec3((pixel - 0.5f * kSize) / kPerMeter, 0), {1, 0, 0, 0},
                 {6 / kPerMeter, 6 / kPerMeter, 1});
         };
-        const Entity entity = place(square, unlit({1, 1, 1}), pose(middle));
-        world.get<PreviousWorldTransform>(entity).world = pose(middle - way);
+        const Entity entity = place(square, unlit({1, 1, 1}), pose(center));
+        world.get<PreviousWorldTransform>(entity).world = pose(center - motion);
     };
     move({20, 32}, {16, 0});
     move({46, 32}, {0, 12});
@@ -202,7 +204,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: the sky blurs when the camera turns") {
     world.insert_resource(Environment{
         .sky = SkyKind::Gradient,
         .zenith = {0, 0, 4},
@@ -237,7 +239,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
     CHECK(error(blurred) < 0.25 * error(plain));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: no smear is longer than the longest") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: no blur is longer than the maximum") {
     bar(unlit({1, 1, 1}), 30, 34, 400);
     open(360, 64, 0.25f);
     const gpu::FloatImage blurred = picture();
@@ -263,7 +265,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: NaN motion is no motion") {
     CHECK(picture().pixels == sharp().pixels);
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: what was behind the camera smears within bounds") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: a point that was behind the camera blurs within bounds") {
     const Entity flown = bar(unlit({1, 1, 1}), 20, 44, 0);
     world.get<PreviousWorldTransform>(flown).world = at({0, 0, 3});
     world.insert_resource(Environment{});
@@ -280,7 +282,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: it works in an image 16384 pixels wide"
     CHECK(wide.at(8192, 2, 0) == test::near(1));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice gives the same bits") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice is bit-identical") {
     bar(unlit({1, 0.4f, 0.1f}), 20, 40, 21);
     bar(unlit({0.2f, 0.4f, 1}), 30, 60, -17, -1);
     open(360, 6);
@@ -288,7 +290,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice gives the same bit
     CHECK(picture().pixels == once.pixels);
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: surfaces lit while they are drawn smear alike") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: forward-shaded surfaces blur alike") {
     bar(unlit({1, 0.4f, 0.1f}), 20, 40, 14);
     bar(unlit({0.2f, 0.4f, 1}), 30, 60, -9, -1);
     open(360);

@@ -53,7 +53,7 @@ class OldShutter : public Shutter {
     void flash(bool on) {
         world.get<WorldTransform>(light).world = on ? at({0, 0, 0.1f}) : at({0, 0, 50});
     }
-    float middle() { return picture().at(kSize / 2, kSize / 2, 0); }
+    float center_value() { return picture().at(kSize / 2, kSize / 2, 0); }
 
     Entity light = place(square, unlit({1, 1, 1}), at({0, 0, 50}));
 };
@@ -63,7 +63,7 @@ class OldShutter : public Shutter {
 // ---- the mean of the last images
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: the mean of equal images is that image, to the bit"
+    OldShutter, "motion accumulation: the mean of equal images is bit-identical to them"
                     * technique("post.motion-blur-accumulation")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
@@ -78,35 +78,35 @@ TEST_CASE_FIXTURE(
     OldShutter, "motion accumulation: a flash of one frame is a fifth of it in five frames"
                     * technique("post.motion-blur-accumulation")) {
     flash(true);
-    const float full = middle();
+    const float full = center_value();
     CHECK(full == test::near(1));
     flash(false);
     set_mode(MotionBlurMode::Accumulate);
     for (int i = 0; i < 5; ++i) {
-        CHECK(middle() == 0.0f);
+        CHECK(center_value() == 0.0f);
     }
     flash(true);
-    CHECK(middle() == test::near(0.2f * full).epsilon(1e-6));
+    CHECK(center_value() == test::near(0.2f * full).epsilon(1e-6));
     flash(false);
     for (int i = 0; i < 4; ++i) {
-        CHECK(middle() == test::near(0.2f * full).epsilon(1e-6));
+        CHECK(center_value() == test::near(0.2f * full).epsilon(1e-6));
     }
-    CHECK(middle() == 0.0f);
+    CHECK(center_value() == 0.0f);
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: at first it is the mean of the frames that there are"
+    OldShutter, "motion accumulation: at first it is the mean of the frames so far"
                     * technique("post.motion-blur-accumulation")) {
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
-    CHECK(middle() == test::near(1));
+    CHECK(center_value() == test::near(1));
     flash(false);
-    CHECK(middle() == test::near(1.0 / 2));
-    CHECK(middle() == test::near(1.0 / 3));
+    CHECK(center_value() == test::near(1.0 / 2));
+    CHECK(center_value() == test::near(1.0 / 3));
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: nothing is left of what was bright a thousand times over"
+    OldShutter, "motion accumulation: no residue remains of a very bright frame"
                     * technique("post.motion-blur-accumulation")) {
     // A sum that images are added to and taken from again would keep what it rounds off.
     set_mode(MotionBlurMode::Accumulate);
@@ -126,31 +126,31 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: a cut, another size and another mode begin anew") {
+    OldShutter, "motion accumulation: a cut, another size and another mode reset it") {
     set_time(1);
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
-    CHECK(middle() == test::near(1));
+    CHECK(center_value() == test::near(1));
     flash(false);
     set_time(5);
-    CHECK(middle() == 0.0f);
+    CHECK(center_value() == 0.0f);
 
     flash(true);
-    static_cast<void>(middle());
+    static_cast<void>(center_value());
     flash(false);
     CHECK(radiance(front(32, 32)).at(16, 16, 0) == 0.0f);
 
     flash(true);
-    static_cast<void>(middle());
+    static_cast<void>(center_value());
     flash(false);
     set_mode(MotionBlurMode::Reconstruct);
-    static_cast<void>(middle());
+    static_cast<void>(center_value());
     set_mode(MotionBlurMode::Accumulate);
-    CHECK(middle() == 0.0f);
+    CHECK(center_value() == 0.0f);
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: n moments of an edge that moves give steps of 1 / n"
+    OldShutter, "motion accumulation: n frames of a moving edge give steps of 1 / n"
                     * technique("post.motion-blur-accumulation")) {
     const Entity edge = bar(unlit({1, 1, 1}), 8, 24, 0);
     const Affine pose = world.get<WorldTransform>(edge).world;
@@ -182,11 +182,11 @@ TEST_CASE_FIXTURE(
 
 namespace {
 
-/// From (0, 0, 1), after a step by which the plane z = 0 goes `way` [px] to the right.
-RenderView stepped(float way) {
+/// View from (0, 0, 1), after a step that moves the plane z = 0 by `motion` [px] to the right.
+RenderView stepped(float motion) {
     const Affine now = look_at({0, 0, 1}, {0, 0, 0});
     Affine before = now;
-    before.row[0].w += way / Shutter::kPerMeter;
+    before.row[0].w += motion / Shutter::kPerMeter;
     return make_render_view(
         {.fov_y = radians(90.0f)}, now, before, {.width = kSize, .height = kSize});
 }
@@ -194,7 +194,7 @@ RenderView stepped(float way) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion camera: a camera that stands changes no bit"
+    OldShutter, "motion camera: with a static camera the image is bit-identical"
                     * technique("post.motion-blur-camera-psf")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 12);
@@ -204,7 +204,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion camera: a point becomes a line as long as its way, of the same light"
+    OldShutter, "motion camera: a point becomes a line as long as its motion, with the same light"
                     * technique("post.motion-blur-camera-psf")) {
     bar(unlit({0, 0, 0}), -200, 300, 0, -0.001f);
     bar(unlit({1, 1, 1}), 32, 33, 0);
@@ -212,8 +212,9 @@ TEST_CASE_FIXTURE(
     for (const float shutter : {360.0f, 180.0f}) {
         set_mode(MotionBlurMode::Camera, shutter);
         const gpu::FloatImage blurred = radiance(stepped(8));
-        const double way = 8.0 * static_cast<double>(shutter) / 360;
-        const std::vector<double> want = oracle::box_filter(row_of(sharp(stepped(8)), 32, 0), way);
+        const double motion = 8.0 * static_cast<double>(shutter) / 360;
+        const std::vector<double> want =
+            oracle::box_filter(row_of(sharp(stepped(8)), 32, 0), motion);
         double energy = 0;
         for (int x = 0; x < kSize; ++x) {
             CAPTURE(x);
@@ -233,7 +234,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion camera: a roll about the view axis leaves the middle alone"
+    OldShutter, "motion camera: a roll about the view axis does not blur the center"
                     * technique("post.motion-blur-camera-psf")) {
     constexpr int kOdd = 65;
     for (int i = 0; i < 16; ++i) {
@@ -255,7 +256,7 @@ TEST_CASE_FIXTURE(
 // ---- along an optic flow
 
 TEST_CASE(
-    "motion flow: the offset is the share of the motion that goes ahead of the surface"
+    "motion flow: the offset is the motion times its cosine with the normal"
     * technique("post.motion-blur-optic-flow")) {
     // y = flow_offset(x.xyz, (0, 0, -2)), then with a motion of 0.
     const std::vector<Vec4> normals = {
@@ -284,18 +285,19 @@ TEST_CASE(
 
 namespace {
 
-/// A plate whose normal goes half ahead, seen from the front, that moves by `way` [px].
-void tilted_bar(OldShutter& scene, float way) {
+/// A plate whose normal is tilted halfway toward its motion of `motion` [px], viewed from the
+/// front.
+void tilted_bar(OldShutter& scene, float motion) {
     const Quat tilt = glm::angleAxis(radians(60.0f), Vec3(0, 1, 0));
     const auto pose = [&](float x) { return affine_from({x, 0, 0}, tilt, {0.6f, 2, 1}); };
     const Entity entity = scene.place(scene.square, scene.unlit({1, 1, 1}), pose(0));
-    scene.world.get<PreviousWorldTransform>(entity).world = pose(-way / Shutter::kPerMeter);
+    scene.world.get<PreviousWorldTransform>(entity).world = pose(-motion / Shutter::kPerMeter);
 }
 
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion flow: what stands keeps its bits, one color keeps itself"
+    OldShutter, "motion flow: a static object is bit-identical, and a uniform color is preserved"
                     * technique("post.motion-blur-optic-flow")) {
     world.insert_resource(Environment{});
     tilted_bar(*this, 0);
@@ -307,7 +309,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion flow: the trailing edge smears farther than the leading one"
+    OldShutter, "motion flow: the trailing edge blurs farther than the leading one"
                     * technique("post.motion-blur-optic-flow")) {
     tilted_bar(*this, 10);
     set_mode(MotionBlurMode::Flow);
@@ -333,10 +335,10 @@ TEST_CASE_FIXTURE(
 // ---- stretched geometry
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: two frames of a box make the ramp of the bar"
+    OldShutter, "motion stretch: two frames of a box give the coverage ramp of a bar"
                     * technique("post.motion-blur-stretch")) {
     const MeshId box = add(make_block());
-    const float way = 16;
+    const float motion = 16;
     const auto pose = [](float x) {
         return affine_from({x, 0, 0}, {1, 0, 0, 0}, {12 / Shutter::kPerMeter, 1, 0.01f});
     };
@@ -351,7 +353,7 @@ TEST_CASE_FIXTURE(
     int steps = 0;
     for (int x = 0; x < kSize; ++x) {
         CAPTURE(x);
-        const double want = oracle::stretch_coverage(x + 0.5, 12, 36, way, 10);
+        const double want = oracle::stretch_coverage(x + 0.5, 12, 36, motion, 10);
         CHECK(std::abs(row[x] - want) <= 0.01);
         steps += want > 0.02 && want < 0.98 ? 1 : 0;
     }
@@ -359,7 +361,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: what stands keeps its bits, first frames are sharp"
+    OldShutter, "motion stretch: a static object is bit-identical, and first frames are sharp"
                     * technique("post.motion-blur-stretch")) {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
@@ -369,7 +371,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both frames"
+    OldShutter, "motion stretch: without motion, a pixel is the mean of both frames"
                     * technique("post.motion-blur-stretch")) {
     const auto pose = [](float z) { return affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(0.5f)); };
     const Entity entity = place(add(make_ball(16)), unlit({1, 0.5f, 0}), pose(-1));
@@ -382,9 +384,7 @@ TEST_CASE_FIXTURE(
     CHECK(rgb_at(mixed, 2, 32) == Vec3(0));
 }
 
-TEST_CASE_FIXTURE(
-    OldShutter,
-    "motion stretch: the camera's motion counts when it is asked for, else it is none") {
+TEST_CASE_FIXTURE(OldShutter, "motion stretch: camera motion is included only on request") {
     place(add(make_ball(16)), unlit({1, 1, 1}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.4f)));
     const auto row_with = [&](bool with_camera) {
         set_mode(MotionBlurMode::Stretch);
@@ -401,7 +401,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: a ball becomes the hull of its two places"
+    OldShutter, "motion stretch: a ball becomes the hull of its two positions"
                     * technique("post.motion-blur-stretch")) {
     const MeshId ball = add(make_ball(32));
     const auto pose = [](float x) { return affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.3f)); };
@@ -433,7 +433,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: what stands before the layer stays as it is"
+    OldShutter, "motion stretch: an object in front of the layer is unchanged"
                     * technique("post.motion-blur-stretch")) {
     const MeshId ball = add(make_ball(16));
     const auto pose = [](float x) { return affine_from({x, 0, -1}, {1, 0, 0, 0}, Vec3(0.6f)); };

@@ -56,7 +56,7 @@ double relative_error(const gpu::FloatImage& image, int channel, const std::vect
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    test::RenderTest, "ocean_fft: the GPU's fields are the simulation's, to 1e-4 of the largest"
+    test::RenderTest, "ocean_fft: the GPU's fields match the simulation, within 1e-4 of the maximum"
                           * technique("water.fft-synthesis")) {
     for (const int size : {16, 32, 64, 128}) {
         const OceanState state = ocean_of(size, size == 64 ? 3 : 1);
@@ -79,7 +79,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: a cascade takes no notice of the others") {
+TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: a cascade is independent of the others") {
     OceanState state = ocean_of(32, 3);
     const gpu::FloatImage among =
         gpu::read_floats(run_fft(device(), state).fields.displacement, 0, 1);
@@ -89,7 +89,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: a cascade takes no notice of the
     CHECK(among.pixels == first.pixels);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: all cascades are two dispatches") {
+TEST_CASE_FIXTURE(test::RenderTest, "ocean_fft: all cascades take two dispatches") {
     const OceanState state = ocean_of(16, 4);
     device().reset_stats();
     CHECK(run_fft(device(), state).cascades == 4);

@@ -44,14 +44,14 @@ double fresnel_of_book(double angle, double index) {
 }  // namespace
 
 TEST_CASE(
-    "optics: light from straight above goes straight down and straight back"
+    "optics: light along the normal is refracted straight on and reflected straight back"
     * technique("water.snell-vectors")) {
     CHECK(reflect_ray(kUp, kUp) == kUp);
     CHECK(glm::distance(refract_ray(kUp, kUp, kIntoWater), -kUp) < 1e-6f);
 }
 
 TEST_CASE(
-    "optics: into water light bends toward the normal as Snell says"
+    "optics: light entering water bends toward the normal by Snell's law"
     * technique("water.snell-vectors")) {
     const float pairs[][2] = {{30, 22.0824f}, {45, 32.1176f}, {60, 40.6281f}};
     for (const auto& pair : pairs) {
@@ -62,14 +62,15 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("optics: no light leaves water beyond 48.75 degrees" * technique("water.snell-vectors")) {
+TEST_CASE("optics: beyond 48.75 degrees no light leaves water" * technique("water.snell-vectors")) {
     CHECK(glm::length(refract_ray(kUp, light_at(48.74f), kWater)) == test::near(1));
     CHECK(refract_ray(kUp, light_at(48.77f), kWater) == Vec3(0));
     CHECK(fresnel_at(48.77f, 1 / kWater) == 1.0f);
     CHECK(fresnel_at(48.5f, 1 / kWater) < 0.7f);
 }
 
-TEST_CASE("optics: rays are unit, coplanar and reversible" * technique("water.snell-vectors")) {
+TEST_CASE(
+    "optics: rays are unit, in one plane, and reversible" * technique("water.snell-vectors")) {
     std::mt19937 random(3);
     for (int i = 0; i < 500; ++i) {
         const Vec3 normal = random_direction(random);
@@ -91,7 +92,7 @@ TEST_CASE("optics: rays are unit, coplanar and reversible" * technique("water.sn
 }
 
 TEST_CASE(
-    "optics: without a boundary light passes straight and nothing is reflected"
+    "optics: without a boundary light goes straight on and nothing is reflected"
     * technique("water.snell-vectors")) {
     for (const float angle : {0.0f, 30.0f, 80.0f, 89.9f}) {
         CHECK(glm::distance(refract_ray(kUp, light_at(angle), 1), -light_at(angle)) < 1e-6f);
@@ -100,7 +101,7 @@ TEST_CASE(
     CHECK(fresnel(0, 1) == 0.0f);
 }
 
-TEST_CASE("optics: water reflects as much as Fresnel says" * technique("water.fresnel")) {
+TEST_CASE("optics: water reflects by Fresnel's law" * technique("water.fresnel")) {
     CHECK(fresnel(1, kWater) == test::near(0.0200593).epsilon(1e-5));
     CHECK(fresnel(1, 1.3f) == test::near(0.0170132).epsilon(1e-5));
     const double pairs[][2] = {{30, 0.0211125}, {45, 0.0275214}, {53.06123, 0.0385538},
@@ -114,7 +115,7 @@ TEST_CASE("optics: water reflects as much as Fresnel says" * technique("water.fr
 }
 
 TEST_CASE(
-    "optics: the form with cosines equals the one with angles, and increases monotonically"
+    "optics: the form with cosines equals the one with angles, and is monotonic"
     * technique("water.fresnel")) {
     float last = fresnel(1, kWater);
     for (int i = 1; i <= 890; ++i) {
@@ -138,7 +139,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "optics: the book's cheap form has its numbers, its bend and its error"
+    "optics: the book's cheap form has its printed values, its kink and its error"
     * technique("water.fresnel-approx")) {
     CHECK(tso_barsky_at(44.9f) == 0.02f);
     CHECK(tso_barsky_at(45) == test::near(0.02));
@@ -172,7 +173,7 @@ TEST_CASE(
     CHECK(least == test::near(-0.007956).epsilon(1e-3));
 }
 
-TEST_CASE("optics: Schlick's form is exact at both ends and nearer than the book's between") {
+TEST_CASE("optics: Schlick's form is exact at both ends and closer than the book's in between") {
     CHECK(fresnel_schlick(1, kWater) == test::near(fresnel(1, kWater)));
     CHECK(fresnel_schlick(0, kWater) == test::near(1));
     float most = 0;
@@ -184,7 +185,7 @@ TEST_CASE("optics: Schlick's form is exact at both ends and nearer than the book
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "optics: shaders have the same functions"
+    RenderTest, "optics: the GLSL functions equal the C++ ones"
                     * technique("water.fresnel, water.fresnel-approx, water.snell-vectors")) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> uniform;

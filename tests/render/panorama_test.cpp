@@ -19,7 +19,7 @@ bool near(const Vec2& a, const Vec2& b) {
 }  // namespace
 
 TEST_CASE(
-    "panorama: an angular map has straight up in the center and the horizon halfway out"
+    "panorama: an angular map has the zenith at the center and the horizon halfway out"
     * technique("env.angular-map")) {
     CHECK(near(angular_uv({0, 1, 0}), {0.5f, 0.5f}));
     CHECK(near(angular_uv({1, 0, 0}), {0.75f, 0.5f}));
@@ -31,7 +31,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "panorama: in an angular map the distance from the center is the angle from straight up"
+    "panorama: in an angular map the distance from the center is the angle from the zenith"
     * technique("env.angular-map")) {
     std::mt19937 random(3);
     std::normal_distribution<float> normal;
@@ -46,7 +46,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "panorama: a cylinder shows -z in the center, its half angle at the edge, and closes behind"
+    "panorama: a cylinder has -z at the center, its half angle at the edge, and no seam"
     * technique("env.panorama")) {
     CHECK(near(cylindrical_uv({0, 0, -1}, kHalfAngle), {0.5f, 0.5f}));
     CHECK(near(cylindrical_uv({1, 0, 0}, kHalfAngle), {0.75f, 0.5f}));
@@ -59,7 +59,7 @@ TEST_CASE(
     CHECK(std::abs(right - left) == test::near(1));  // the same point of an image that repeats
 }
 
-TEST_CASE("panorama: longitude and latitude are fractions of the image") {
+TEST_CASE("panorama: longitude and latitude are linear in the image") {
     CHECK(near(equirectangular_uv({0, 0, -1}), {0.5f, 0.5f}));
     CHECK(near(equirectangular_uv({1, 0, 0}), {0.75f, 0.5f}));
     CHECK(near(equirectangular_uv({-1, 0, 0}), {0.25f, 0.5f}));
@@ -68,7 +68,7 @@ TEST_CASE("panorama: longitude and latitude are fractions of the image") {
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "panorama: the GPU's mappings are the CPU's" * technique("env.angular-map")) {
+    RenderTest, "panorama: the GPU's mappings equal the CPU's" * technique("env.angular-map")) {
     std::mt19937 random(4);
     std::normal_distribution<float> normal;
     std::vector<Vec4> inputs = {

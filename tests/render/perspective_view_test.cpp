@@ -16,7 +16,7 @@ using glm::dvec2;
 using glm::dvec4;
 using oracle::DVec3;
 
-/// Of a place: x and y of the image and depth; w is q.
+/// Of a position: x and y in the image and depth; w is q.
 dvec4 project(const dmat4& clip_from_world, const DVec3& p) {
     const dvec4 clip = clip_from_world * dvec4(p, 1);
     return {DVec3(clip) / clip.w, clip.w};
@@ -51,7 +51,7 @@ const std::vector<Vec4>& lights_about() {
 }  // namespace
 
 TEST_CASE(
-    "perspective map: under a sun above, what is ten times nearer has ten times the texels"
+    "perspective map: under a sun above, ten times nearer means ten times the texels"
     * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     const auto corners = slice_corners(camera, {.near = 1, .far = 100});
@@ -74,7 +74,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "perspective map: a sun is a place at depth 1.020202, beside the camera a direction"
+    "perspective map: a sun maps to a point at depth 1.020202, a lateral one to a direction"
     * technique("shadow.perspective-map")) {
     const dmat4 camera = virtual_camera(straight_view(), 1, 100, 0);
     for (const DVec3& toward : {DVec3(0.3, 0.5, -0.6), DVec3(0, 0, -1), DVec3(-1, 2, 0.7)}) {
@@ -89,7 +89,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "perspective map: of a camera without perspective it is an ordinary shadow map"
+    "perspective map: for an orthographic camera it is an ordinary shadow map"
     * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     const auto corners = slice_corners(camera, {.near = 1, .far = 20});
@@ -120,11 +120,11 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "perspective map: a ray of the light is one texel, and depth grows along all of it"
+    "perspective map: a light ray maps to one texel, and depth is monotonic along it"
     * technique("shadow.perspective-map")) {
     const RenderView camera = straight_view();
     std::mt19937 random(2);
-    std::uniform_real_distribution<double> share(0, 1);
+    std::uniform_real_distribution<double> unit(0, 1);
     for (const Vec4& light : lights_about()) {
         const ViewSlice slice = {.near = 0.1, .far = 30};
         const auto view = make_perspective_view(camera, light, slice, 512, 2);
@@ -133,9 +133,9 @@ TEST_CASE(
         REQUIRE(view);
         const dmat4 map(view->clip_from_world);
         for (int i = 0; i < 200; ++i) {
-            const double along = 0.1 + 29.9 * share(random);
+            const double along = 0.1 + 29.9 * unit(random);
             const DVec3 p = {
-                (2 * share(random) - 1) * along, (2 * share(random) - 1) * along, -along};
+                (2 * unit(random) - 1) * along, (2 * unit(random) - 1) * along, -along};
             const dvec4 here = project(map, p);
             CHECK(here.w > 0);
             CHECK(std::max(std::abs(here.x), std::abs(here.y)) <= 508.0 / 512 + 1e-4);
@@ -156,7 +156,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("perspective map: a light among what the camera sees, or a slice of nothing, has none") {
+TEST_CASE("perspective map: a light inside the view, or an empty slice, has no map") {
     const RenderView camera = straight_view();
     const ViewSlice slice = {.near = 0.1, .far = 30};
     CHECK_FALSE(make_perspective_view(camera, {0, 0, -5, 1}, slice, 512, 2));
@@ -168,7 +168,7 @@ TEST_CASE("perspective map: a light among what the camera sees, or a slice of no
 }
 
 TEST_CASE(
-    "perspective map: near the camera it has more texels than a uniform map as large"
+    "perspective map: near the camera it has more texels than a uniform map of its size"
     * technique("shadow.map-aliasing")) {
     const Affine pose = look_at({0, 1.7f, 0}, {0, 1.2f, -5});
     const RenderView camera =
@@ -216,12 +216,12 @@ constexpr Shadow kPerspective = {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    PostScene, "perspective map: suns from all sides shade as rays say, in one map"
+    PostScene, "perspective map: shadows of suns in all directions match ray casts, with one map"
                    * technique("shadow.perspective-map")) {
     const oracle::ShadowScene rays(world);
     for (const Vec3& toward :
          {Vec3(0.1f, 1, 0.05f), Vec3(0.7f, 0.9f, 0.4f), Vec3(0.2f, 0.5f, -0.8f),  // into the camera
-          Vec3(-0.1f, 0.35f, 0.9f)}) {  // from behind: the posts there shade what is seen
+          Vec3(-0.1f, 0.35f, 0.9f)}) {  // from behind: the posts there shadow the visible ground
         const DVec3 to_sun = glm::normalize(DVec3(toward));
         const Entity sun = shine(DirectionalLight{}, look_at(toward, {0, 0, 0}));
         world.add(sun, kPerspective);
@@ -243,7 +243,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PostScene, "perspective map: away from edges it decides as the uniform map does"
+    PostScene, "perspective map: away from edges it agrees with the uniform map"
                    * technique("shadow.perspective-map")) {
     const Entity sun = shine(DirectionalLight{}, look_at({0.7f, 0.9f, 0.4f}, {0, 0, 0}));
     world.add(sun, kPerspective);
@@ -261,14 +261,15 @@ TEST_CASE_FIXTURE(
                 return static_cast<std::size_t>((y + dy) * 96 + x + dx);
             };
             const Receiver& here = straight[at(0, 0)];
-            bool edge = !here.there;
+            bool edge = !here.valid;
             for (int i = 0; i < 25; ++i) {
                 const Receiver& there = straight[at(i % 5 - 2, i / 5 - 2)];
-                edge = edge || !there.there || there.seen != here.seen;
+                edge = edge || !there.valid || there.visibility != here.visibility;
             }
             if (!edge) {
                 ++compared;
-                different += (distorted[at(0, 0)].seen < 0.5) != (here.seen < 0.5) ? 1 : 0;
+                different +=
+                    (distorted[at(0, 0)].visibility < 0.5) != (here.visibility < 0.5) ? 1 : 0;
             }
         }
     }
@@ -277,41 +278,43 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PostScene, "perspective map: a lamp beside the image has one map, in it the usual six") {
+    PostScene,
+    "perspective map: a lamp outside the view has one map, one inside it the usual six") {
     const oracle::ShadowScene rays(world);
     const Entity lamp = shine(PointLight{.radius = 0}, at({0, 0, 0}));
     world.add(lamp, kPerspective);
-    for (const Vec3& place : {Vec3(1.5f, 7, 1), Vec3(-2, 3, 9), Vec3(0, 1, -4)}) {
-        world.get<WorldTransform>(lamp).world = at(place);
-        CAPTURE(place.z);
-        CHECK(shadow_views() == (place.z < 0 ? 6 : 1));
+    for (const Vec3& position : {Vec3(1.5f, 7, 1), Vec3(-2, 3, 9), Vec3(0, 1, -4)}) {
+        world.get<WorldTransform>(lamp).world = at(position);
+        CAPTURE(position.z);
+        CHECK(shadow_views() == (position.z < 0 ? 6 : 1));
         CHECK(
             agreement(
                 receivers(lamp, view()),
-                [&](const DVec3& p) { return rays.blocked(p, DVec3(place)); })
+                [&](const DVec3& p) { return rays.blocked(p, DVec3(position)); })
             >= 0.98);
     }
 }
 
-TEST_CASE_FIXTURE(PostScene, "perspective map: a spot's map is of what it lights alone") {
+TEST_CASE_FIXTURE(PostScene, "perspective map: a spot's map covers only what it lights") {
     const oracle::ShadowScene rays(world);
-    const Vec3 place = {3, 6, 1};
+    const Vec3 position = {3, 6, 1};
     const Entity lamp = shine(
         SpotLight{
             .radius = 12,
             .attenuation = {.falloff = Falloff::None},
             .inner_angle = radians(25.0f),
             .outer_angle = radians(25.0f)},
-        look_at(place, {0.5f, 0, -3}));
+        look_at(position, {0.5f, 0, -3}));
     world.add(lamp, kPerspective);
     CHECK(shadow_views() == 1);
     CHECK(
         agreement(
-            receivers(lamp, view()), [&](const DVec3& p) { return rays.blocked(p, DVec3(place)); })
+            receivers(lamp, view()),
+            [&](const DVec3& p) { return rays.blocked(p, DVec3(position)); })
         >= 0.98);
 }
 
-TEST_CASE("perspective map: what would harden at contacts is soft") {
+TEST_CASE("perspective map: contact hardening falls back to the soft filter") {
     const Shadow asked = {
         .method = ShadowMethod::Perspective, .filter = ShadowFilter::ContactHardening};
     CHECK(sanitize(asked).filter == ShadowFilter::Soft);

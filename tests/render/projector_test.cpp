@@ -39,7 +39,7 @@ struct WallScene : ShadowTest {
                 .outer_angle = radians(50.0f)},
             at({0, 0, 2}));
     }
-    /// Light at a point of the wall, viewed from in front of it.
+    /// Light at a point of the wall, viewed from the front.
     Vec3 at_wall(const gpu::FloatImage& image, const Vec2& p) const {
         const auto pixel = [](float x) { return static_cast<int>((x / 3 * 0.5f + 0.5f) * 96); };
         return rgb_at(image, pixel(p.x), pixel(-p.y));
@@ -72,7 +72,7 @@ TEST_CASE(
 
 TEST_CASE_FIXTURE(
     WallScene,
-    "projector: at distance d the image is 2 d tan(fov / 2) wide, upright, and dark beyond"
+    "projector: at distance d the image is 2 d tan(fov / 2) wide, upright, and black outside"
         * technique("shadow.projector")) {
     const float fov = radians(40.0f);
     world.add(lamp, Projector{.image = add(four_colors()), .width = fov});
@@ -98,7 +98,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "projector: a point behind it gets nothing, one on its axis the center of the image"
+    "projector: a point behind it is unlit, and one on its axis gets the image center"
     * technique("shadow.projective-matrix")) {
     const Affine pose = look_at({1, 2, 3}, {1, 0, 3});
     const auto record = make_projector_record({}, LightKind::Spot, pose, 0, 0);
@@ -113,8 +113,8 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene,
-    "projector: objects in front of the wall shadow the image" * technique("shadow.projector")) {
+    WallScene, "projector: an object in front of the wall occludes the image"
+                   * technique("shadow.projector")) {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(60.0f)});
     world.add(lamp, Shadow{.resolution = 256});
     const gpu::FloatImage open = wall();
@@ -127,8 +127,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: an animation advances from frame to frame with time"
-                   * technique("shadow.projector")) {
+    WallScene, "projector: an image sequence advances with time" * technique("shadow.projector")) {
     world.add(
         lamp, Projector{
                   .image = add(four_colors()),
@@ -150,7 +149,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: where a pixel covers many of its texels it shows their mean"
+    WallScene, "projector: where a pixel covers many texels it shows their mean"
                    * technique("shadow.projector")) {
     ImageData fine;
     fine.width = fine.height = 512;
@@ -169,8 +168,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    WallScene, "projector: its image does not depend on the order of surfaces and lights") {
+TEST_CASE_FIXTURE(WallScene, "projector: the image is the same with every light method") {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(40.0f)});
     const gpu::FloatImage clustered = wall();
     CHECK(at_wall(clustered, {-0.3f, 0.3f}).x > 0.5f);
@@ -183,7 +181,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: a sun projects its image along its light, equally wide everywhere") {
+    WallScene,
+    "projector: a sun projects its image along its light, equally wide at any distance") {
     world.destroy(lamp);
     const Entity sun = shine(DirectionalLight{.illuminance = 5}, at({0, 0, 2}));
     world.add(sun, Projector{.image = add(four_colors()), .width = 2});
@@ -194,7 +193,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: without an image, or with invalid numbers, the light is finite") {
+    WallScene, "projector: without an image, or with invalid values, the light is finite") {
     const gpu::FloatImage plain = wall();
     world.add(lamp, Projector{});
     CHECK(largest_difference(plain, wall()) == 0);

@@ -25,7 +25,7 @@ class Rippled : public Scene {
   public:
     Rippled() { world.insert_resource(FrameTime{.time = 1.25}); }
 
-    /// A wall of many colors 8 m away, and beside the middle a post 2 m away.
+    /// A wall of many colors 8 m away, and off the center a post 2 m away.
     void place_objects(const Vec3& post_color) {
         ImageData image = {.name = "wall", .width = 16, .height = 16, .srgb = false, .pixels = {}};
         for (int i = 0; i < 256; ++i) {
@@ -91,7 +91,7 @@ RippleRing ring_at(float age) {
 // ---- the spec's formula
 
 TEST_CASE(
-    "ripple: the wave of the screen has the printed zeros, values and extremes"
+    "ripple: the screen wave has the printed zeros, values and extrema"
     * technique("post.scene-ripple")) {
     const auto wave = [](double w0) { return oracle::screen_wave(1 - w0, 1, 1); };
     for (const double zero : {0.0, 0.2, 0.6, 1.0}) {
@@ -120,11 +120,11 @@ TEST_CASE(
         double before = 0;
         for (int i = 1; i <= 100000; ++i) {
             const double d = i * 1e-5;
-            const double place = d + oracle::screen_wave(d, 1, amplitude);
-            if (place < before) {
+            const double position = d + oracle::screen_wave(d, 1, amplitude);
+            if (position < before) {
                 return true;
             }
-            before = place;
+            before = position;
         }
         return false;
     };
@@ -135,7 +135,7 @@ TEST_CASE(
 // ---- the field
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: the screen's field is the formula, with the center to the left below"
+    Rippled, "ripple: the screen's field matches the formula, with the center at the lower left"
                  * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     const ScreenRipple ripple = {
@@ -156,14 +156,14 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Rippled,
-    "ripple: a round one is round in pixels, several add up" * technique("post.scene-ripple")) {
+    "ripple: a round one is round in pixels, and several add up" * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     const ScreenRipple one = {
         .center = {0.5f, 0.5f}, .age = 0.25f, .radius = 0.3f, .radius_speed = 0, .round = true};
     const ScreenRipple two = {.center = {0.2f, 0.7f}, .age = 0.25f, .radius_speed = 1};
     const Entity first = world.create(one);
     const gpu::FloatImage alone = field().shift;
-    for (int i = 1; i < 18; ++i) {  // a quarter turn about the middle
+    for (int i = 1; i < 18; ++i) {  // a quarter turn around the center
         const float right = alone.at(kWidth / 2 + i, kHeight / 2, 0);
         const float up = alone.at(kWidth / 2, kHeight / 2 - 1 - i, 1);
         CHECK(right == test::near(up).epsilon(1e-3));
@@ -179,7 +179,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: at the points of a grid it comes closer, 3 times for twice as many"
+    Rippled, "ripple: evaluated at grid points it converges, 3 times closer for twice as many"
                  * technique("post.scene-ripple")) {
     const auto error_of = [&](int points) {
         const Entity e = world.create(ScreenRipple{
@@ -198,7 +198,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: a ring turns rays as the oracle does, to a quarter of a pixel") {
+    Rippled, "ripple: a ring deflects rays as the oracle does, within a quarter of a pixel") {
     place_objects({1, 0, 0});
     const Vec3 center = {-0.3f, 0.2f, -4};
     world.create(ring_at(0.5f), WorldTransform{at(center)});
@@ -216,7 +216,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: hot air shifts as the oracle says, never by more than its strength"
+    Rippled, "ripple: hot air shifts pixels as the oracle does, never by more than its strength"
                  * technique("post.glare-heat-haze")) {
     place_objects({1, 0, 0});
     for (const HazeShape shape : {HazeShape::Box, HazeShape::Ball}) {
@@ -248,7 +248,7 @@ TEST_CASE_FIXTURE(
 // ---- the image
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: of no strength or outside of its time, there is no pass"
+    Rippled, "ripple: with strength 0 or outside its duration there is no pass"
                  * technique("post.scene-ripple")) {
     place_objects({1, 0, 0});
     static_cast<void>(draw(seen()));
@@ -265,14 +265,14 @@ TEST_CASE_FIXTURE(
     world.insert_resource(LensRain{.amount = 0});
     CHECK(radiance(seen()).pixels == still.pixels);
     CHECK(!frame_graph(shared_renderer()).was_run("ripple"));
-    // A pass that shifts nothing that is seen changes no bit either.
+    // A pass that shifts no visible pixel is bit-identical, too.
     world.create(ring_at(0.1f), WorldTransform{at({0, 0, -30})});
     CHECK(radiance(seen()).pixels == still.pixels);
     CHECK(frame_graph(shared_renderer()).was_run("ripple"));
 }
 
 TEST_CASE(
-    "ripple: what stands in front neither ripples nor leaks, to the bit"
+    "ripple: the foreground neither ripples nor leaks, bit-exactly"
     * technique("post.glare-heat-haze, post.scene-ripple")) {
     const auto pictures = [](const Vec3& post) {
         std::vector<gpu::FloatImage> made;
@@ -325,7 +325,8 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    Rippled, "ripple: places outside of the image show its edge" * technique("post.scene-ripple")) {
+    Rippled,
+    "ripple: positions outside the image sample its edge" * technique("post.scene-ripple")) {
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0.25f, 0.5f, 1, 1}}),

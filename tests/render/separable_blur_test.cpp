@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    RenderTest, "separable blur: two passes of 7 are the 49 weights at once"
+    RenderTest, "separable blur: two passes of 7 taps equal the 49 weights in one"
                     * technique("post.separable-blur")) {
     const LightImage picture = noise();
     for (const BlurKernel& kernel : {kBinomialKernel, kBox, kAskew}) {

@@ -15,7 +15,7 @@ bool overlap(const AtlasRect& a, const AtlasRect& b) {
 
 }  // namespace
 
-TEST_CASE("shadow atlas: squares never overlap, and all of it can be handed out") {
+TEST_CASE("shadow atlas: squares never overlap, and the whole atlas can be allocated") {
     ShadowAtlas atlas(1024);
     std::vector<AtlasRect> taken;
     for (const int size : {512, 16, 256, 256, 64, 512, 512}) {
@@ -40,7 +40,7 @@ TEST_CASE("shadow atlas: squares never overlap, and all of it can be handed out"
     CHECK(area == 1024 * 1024);
 }
 
-TEST_CASE("shadow atlas: what was given back becomes one square again, in any order") {
+TEST_CASE("shadow atlas: released squares merge again, in any order") {
     ShadowAtlas atlas(256);
     std::mt19937 random(5);
     for (int round = 0; round < 20; ++round) {
@@ -59,7 +59,7 @@ TEST_CASE("shadow atlas: what was given back becomes one square again, in any or
     }
 }
 
-TEST_CASE("shadow atlas: there is no room for a square larger than it") {
+TEST_CASE("shadow atlas: a square larger than the atlas is refused") {
     ShadowAtlas atlas(64);
     CHECK_FALSE(atlas.allocate(128).has_value());
     CHECK(atlas.allocate(64).has_value());

@@ -76,7 +76,8 @@ std::vector<std::string> warnings_of(const std::function<void()>& action) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: casters that are nowhere cast nothing, the others as before") {
+    BoxScene,
+    "shadow input: casters without a finite position cast nothing, others are unaffected") {
     const Affine pose = look_at(kLamp, {0, 0, 0});
     const MeshId open_mesh = add(make_plane({}));
     for (const ShadowMethod method : kMethods) {
@@ -105,8 +106,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene,
-    "shadow input: a radius of 0, negative or infinite has its shadow, a NaN one no light") {
+    BoxScene, "shadow input: a light radius of 0, negative or infinite has shadows, NaN no light") {
     const gpu::FloatImage dark = radiance(view());
     for (const ShadowMethod method : kMethods) {
         for (const float radius : {0.0f, -3.0f, kInfinity}) {
@@ -129,7 +129,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: lights that are nowhere, or turned nowhere, break no image") {
+    BoxScene, "shadow input: lights without a finite position or direction break no image") {
     for (const ShadowMethod method : kMethods) {
         for (const Affine& pose :
              {at({kNan, 1, 0}), at({0, -kInfinity, 0}),
@@ -147,7 +147,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: a light within, on or in a corner of a caster lights nothing behind") {
+    BoxScene,
+    "shadow input: a light inside, on or at a corner of a caster lights nothing behind it") {
     for (const ShadowMethod method : kMethods) {
         CAPTURE(name_of(method));
         // Within the box nothing leaves it.
@@ -155,12 +156,12 @@ TEST_CASE_FIXTURE(
         world.add(light, Shadow{.method = method, .resolution = 128, .source_size = 0});
         int lit = 0;
         for (const Receiver& r : receivers(light, view())) {
-            lit += r.there && r.seen > 0.5 ? 1 : 0;
+            lit += r.valid && r.visibility > 0.5 ? 1 : 0;
         }
         CHECK(lit == 0);
         world.destroy(light);
-        for (const Vec3& place : {Vec3(0, 1.15f, 0), Vec3(0.35f, 1.15f, 0.35f)}) {
-            light = shine(PointLight{.radius = 0}, at(place));
+        for (const Vec3& position : {Vec3(0, 1.15f, 0), Vec3(0.35f, 1.15f, 0.35f)}) {
+            light = shine(PointLight{.radius = 0}, at(position));
             world.add(light, Shadow{.method = method, .resolution = 128});
             check_finite();
             world.destroy(light);
@@ -169,8 +170,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene,
-    "shadow input: lights by an open mesh are reported once and get maps that are right") {
+    BoxScene, "shadow input: lights near an open mesh are reported once and get correct maps") {
     MeshData lid = make_plane({.size = {0.8f, 0.8f}});
     lid.name = "an open lid";
     put(std::move(lid), {0.9f, 1.2f, 0.2f});
@@ -195,7 +195,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: volumes of numbers that are none are endless or as good as") {
+    BoxScene, "shadow input: invalid volume settings give (almost) infinite volumes") {
     for (const Extrusion extrusion :
          {Extrusion::Infinite, Extrusion::Constant, Extrusion::Radius, Extrusion::Plane}) {
         for (const float number : {kNan, -1.0f, kInfinity}) {

@@ -18,10 +18,10 @@ class FilterTest : public RenderTest {
     /// `soft`: the sixteen-fold filter, else 2x2 or, `hard`, the nearest texel. Whether or not the
     /// shader can filter otherwise, too.
     float lit(const std::array<float, 64>& map, Vec2 st, bool soft, bool hard = false) {
-        const float share = lit(map, st, soft, hard, {{"SHADOW_SOFT"}});
+        const float lit_fraction = lit(map, st, soft, hard, {{"SHADOW_SOFT"}});
         const float same = lit(map, st, soft, hard, {{"SHADOW_SOFT"}, {"SHADOW_CONTACT"}});
-        CHECK(share == test::near(same).epsilon(1e-6));
-        return share;
+        CHECK(lit_fraction == test::near(same).epsilon(1e-6));
+        return lit_fraction;
     }
 
   private:
@@ -56,7 +56,7 @@ uniform float filter_kind;
 layout(location = 0) out vec4 lit;
 void main() {
     ShadowPoint p = ShadowPoint(st, 0.5, vec2(0.0), vec4(0.0, 0.0, 8.0, 8.0));
-    lit = vec4(filtered_share(p, vec4(filter_kind, 1.0, 0.0, 2.0), vec2(0.0), true));
+    lit = vec4(filtered_visibility(p, vec4(filter_kind, 1.0, 0.0, 2.0), vec2(0.0), true));
 })");
         return files;
     }
@@ -78,7 +78,7 @@ std::array<float, 64> edge_at(int first) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: the four comparisons of the book's figure make 0.75"
+    FilterTest, "shadow filter: the four comparisons of the book's figure give 0.75"
                     * technique("shadow.pcf")) {
     std::array<float, 64> map{};
     const char* rows[] = {"1110", "1110", "1100", "1100"};  // from the top
@@ -92,9 +92,9 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     FilterTest,
-    "shadow filter: 2x2 comparisons are weighted by how near they are" * technique("shadow.pcf")) {
+    "shadow filter: 2x2 comparisons are weighted bilinearly" * technique("shadow.pcf")) {
     std::array<float, 64> map{};
-    map[3 * 8 + 3] = 1;  // one lit texel, its middle at (3.5, 3.5)
+    map[3 * 8 + 3] = 1;  // one lit texel, its center at (3.5, 3.5)
     for (const float x : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) {
         for (const float y : {0.0f, 0.5f, 0.9f}) {
             CHECK(lit(map, {3.5f + x, 3.5f + y}, false) == test::near((1 - x) * (1 - y)));
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(
     CHECK(lit(map, {4, 4}, false) == test::near(0.5));
 }
 
-TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard one takes the nearest texel alone") {
+TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard filter uses the nearest texel only") {
     std::array<float, 64> map{};
     map[3 * 8 + 3] = 1;
     CHECK(lit(map, {3.99f, 3.01f}, false, true) == 1);
@@ -116,7 +116,7 @@ TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard one takes the nearest tex
 
 TEST_CASE_FIXTURE(
     FilterTest,
-    "shadow filter: all lit is 1 and none lit is 0, to the bit" * technique("shadow.pcf")) {
+    "shadow filter: all texels lit give exactly 1, none exactly 0" * technique("shadow.pcf")) {
     for (const bool soft : {false, true}) {
         for (const Vec2 st : {Vec2(4, 4), Vec2(3.3f, 4.9f), Vec2(4.5f, 2.25f)}) {
             CHECK(lit(edge_at(0), st, soft) == test::near(1).epsilon(1e-6));
@@ -126,9 +126,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: sixteen 2x2 filters rise over an edge as 1 3 5 7 eighths"
+    FilterTest, "shadow filter: sixteen 2x2 filters cross an edge in steps of 1 3 5 7 eighths"
                     * technique("shadow.soft-pcf")) {
-    // At texel middles the weights along an axis are (1, 2, 2, 2, 1) / 8.
+    // At texel centers the weights along an axis are (1, 2, 2, 2, 1) / 8.
     const float want[] = {0, 0.125f, 0.375f, 0.625f, 0.875f, 1};
     for (int i = 0; i < 6; ++i) {
         CHECK(lit(edge_at(4), {1.5f + static_cast<float>(i), 4.5f}, true) == test::near(want[i]));
@@ -144,7 +144,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    FilterTest, "shadow filter: one dark texel takes at most a sixteenth of the soft one"
+    FilterTest, "shadow filter: one dark texel takes at most a sixteenth of the soft filter"
                     * technique("shadow.soft-pcf")) {
     // Weights of 64ths: corners 1, edges 2, inside 4.
     const int want[5] = {1, 2, 2, 2, 1};
@@ -161,7 +161,7 @@ TEST_CASE_FIXTURE(
 // -------------------------------------------------------------------------------
 
 TEST_CASE(
-    "shadow filter: the penumbra's width is similar triangles (shadow.penumbra)"
+    "shadow filter: the penumbra's width follows from similar triangles (shadow.penumbra)"
     * technique("shadow.penumbra")) {
     CHECK(oracle::penumbra_width(1, 2, 3) == test::near(0.5));
     CHECK(oracle::penumbra_width(0, 2, 3) == 0);
@@ -174,8 +174,9 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow filter: contact hardening makes penumbras as wide as the law, to 15 %"
-                    * technique("shadow.penumbra")) {
+    ShadowTest,
+    "shadow filter: contact hardening gives penumbras of the predicted width, within 15 %"
+        * technique("shadow.penumbra")) {
     // A half plane above a floor, its edge at x = 0, under a lamp straight above the edge.
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     for (const auto& setup :
@@ -201,14 +202,14 @@ TEST_CASE_FIXTURE(
         double sum_xx = 0;
         std::vector<std::pair<double, double>> profile;
         for (const Receiver& r : receivers(lamp, look({0.0f, 0.3f, 0.8f}, {0, 0, 0}, 160, 160))) {
-            if (r.there && r.position.y < 0.01 && std::abs(r.position.x) < 0.45) {
-                profile.emplace_back(r.position.x, r.seen);
+            if (r.valid && r.position.y < 0.01 && std::abs(r.position.x) < 0.45) {
+                profile.emplace_back(r.position.x, r.visibility);
             }
         }
         std::sort(profile.begin(), profile.end());
         REQUIRE(profile.size() > 500);
-        // The share rises as the distribution of a disc's points along x, whose standard deviation
-        // is a quarter of its width: measured from the slope of the share.
+        // The lit fraction rises as the distribution of a disc's points along x, whose standard
+        // deviation is a quarter of its width: measured from the slope of the fraction.
         const auto mean_over = [&](double from, double to) {
             double total = 0;
             int count = 0;
@@ -241,7 +242,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow filter: beneath a thin bar contact hardening is dark at every pixel") {
+    ShadowTest, "shadow filter: below a thin bar contact hardening is dark at every pixel") {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     put(make_box({.size = {0.06f, 0.01f, 3}}), {0, 0.1f, 0});
     put(make_box({.size = {0.3f, 0.3f, 0.3f}}), {1.5f, 4, 0});  // for a deep map: a wide search
@@ -257,9 +258,9 @@ TEST_CASE_FIXTURE(
     int lit = 0;
     for (const Receiver& r : receivers(sun, look({0.5f, 0.25f, 0}, {0, 0, 0}, 128, 128))) {
         // The penumbra is 2.5 cm wide on either side.
-        if (r.there && r.position.y < 0.001 && std::abs(r.position.x) < 0.01) {
+        if (r.valid && r.position.y < 0.001 && std::abs(r.position.x) < 0.01) {
             ++count;
-            lit += r.seen > 0.5 ? 1 : 0;
+            lit += r.visibility > 0.5 ? 1 : 0;
         }
     }
     CHECK(count > 100);
@@ -267,7 +268,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow filter: a source without a size has a hard edge, and no blocker is all lit"
+    ShadowTest, "shadow filter: a source of size 0 has a hard edge, and no blocker means fully lit"
                     * technique("shadow.penumbra")) {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     const Entity lamp = shine(
@@ -278,13 +279,13 @@ TEST_CASE_FIXTURE(
         Shadow{.filter = ShadowFilter::ContactHardening, .resolution = 512, .source_size = 0.3f});
     const RenderView view = look({0.0f, 2, 1}, {0, 0, 0}, 64, 64);
     for (const Receiver& r : receivers(lamp, view)) {
-        CHECK((!r.there || r.seen == test::near(1)));
+        CHECK((!r.valid || r.visibility == test::near(1)));
     }
     put(make_plane({.size = {2, 4}}), {-1, 1, 0});
     world.get<Shadow>(lamp).source_size = 0;
     int between = 0;
     for (const Receiver& r : receivers(lamp, view)) {
-        between += r.there && r.seen > 0.01 && r.seen < 0.99 ? 1 : 0;
+        between += r.valid && r.visibility > 0.01 && r.visibility < 0.99 ? 1 : 0;
     }
     CHECK(between < 2 * 64);  // of 4096: a pixel or two a row
 }

@@ -11,14 +11,14 @@
 
 namespace limn::test {
 
-// What a light's shadows make of an image, pixel by pixel, beside what rays say.
+// The shadows of a light in an image, pixel by pixel, compared with ray casts.
 
 /// A pixel of an image with one light.
 struct Receiver {
-    bool there = false;  ///< a surface that faces the light, and in its cone
+    bool valid = false;  ///< a surface that faces the light, and in its cone
     oracle::DVec3 position;
     oracle::DVec3 normal;
-    double seen = 1;  ///< share of the light that the shadow lets through
+    double visibility = 1;  ///< fraction of the light that is not shadowed
     /// Where rays start above the surface [m]: OpenGL may snap vertices to 1/256 of a pixel, and a
     /// position from a depth is as much off the plane as a shift by that moves the plane.
     double clearance = 1e-4;
@@ -26,7 +26,7 @@ struct Receiver {
     [[nodiscard]] oracle::DVec3 start() const { return position + clearance * normal; }
 };
 
-/// A light from -z of `pose`; a matte white world without anything around it.
+/// A light along -z of `pose`; a matte white scene in a black environment.
 class ShadowTest : public Scene {
   public:
     MaterialId white = add(Material{
@@ -39,7 +39,7 @@ class ShadowTest : public Scene {
         return place(add(std::move(mesh)), white, at(position));
     }
 
-    /// What the shadow of `light` does to every pixel, row by row from the top: the image with it
+    /// Visibility of `light` in every pixel, row by row from the top: the image with its shadow
     /// over the one without.
     std::vector<Receiver> receivers(Entity light, const RenderView& view) {
         const Shadow shadow = world.get<Shadow>(light);
@@ -55,9 +55,9 @@ class ShadowTest : public Scene {
         for (int y = 0; y < view.height; ++y) {
             for (int x = 0; x < view.width; ++x) {
                 Receiver& r = all.emplace_back();
-                r.there = full.at(x, y, 0) > 1e-4f && depth.at(x, y, 0) < kNoDepth;
-                if (r.there) {
-                    r.seen = double(shaded.at(x, y, 0)) / full.at(x, y, 0);
+                r.valid = full.at(x, y, 0) > 1e-4f && depth.at(x, y, 0) < kNoDepth;
+                if (r.valid) {
+                    r.visibility = double(shaded.at(x, y, 0)) / full.at(x, y, 0);
                     r.position = point_of(view, x, y, depth.at(x, y, 0));
                     r.normal = {normal.at(x, y, 0), normal.at(x, y, 1), normal.at(x, y, 2)};
                     const double pixel = 2.0 * double(view.tangent.y) / view.height;
@@ -83,41 +83,41 @@ class ShadowTest : public Scene {
     }
 };
 
-/// Share of the receivers on which image and rays agree whether they are lit.
+/// Fraction of the receivers on which image and ray casts agree whether they are lit.
 template <typename Blocked>
 double agreement(const std::vector<Receiver>& receivers, Blocked&& blocked) {
     int same = 0;
     int count = 0;
     for (const Receiver& r : receivers) {
-        if (r.there) {
+        if (r.valid) {
             ++count;
-            same += (r.seen < 0.5) == blocked(r.start()) ? 1 : 0;
+            same += (r.visibility < 0.5) == blocked(r.start()) ? 1 : 0;
         }
     }
     REQUIRE(count > 0);
     return static_cast<double>(same) / count;
 }
 
-/// Pixels that no shift by a few texels explains.
+/// Pixels that a shift by a few texels does not explain.
 struct WrongPixels {
     int acne = 0;      ///< dark where every ray nearby is free
     int floating = 0;  ///< lit where every ray nearby is blocked: the shadow left its caster
-    int count = 0;     ///< that were looked at
+    int count = 0;     ///< pixels tested
 };
 
-/// `shift` [m]: by how much the shadow may be off across the light; `to_light` gives the unit
+/// `shift` [m]: tolerated offset of the shadow across the light; `to_light` gives the unit
 /// vector from a point, `blocked` casts the ray.
 template <typename ToLight, typename Blocked>
 WrongPixels wrong_pixels(
     const std::vector<Receiver>& all, double shift, ToLight&& to_light, Blocked&& blocked) {
     WrongPixels wrong;
     for (const Receiver& r : all) {
-        if (!r.there) {
+        if (!r.valid) {
             continue;
         }
         ++wrong.count;
         const oracle::DVec3 start = r.start();
-        const bool dark = r.seen < 0.5;
+        const bool dark = r.visibility < 0.5;
         if (blocked(start) == dark) {
             continue;
         }

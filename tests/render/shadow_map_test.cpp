@@ -24,7 +24,7 @@ SpotLight even_spot(float outer) {
         .outer_angle = outer};
 }
 
-DVec3 place_of(const Affine& a) {
+DVec3 position_in(const Affine& a) {
     return {a.row[0].w, a.row[1].w, a.row[2].w};
 }
 
@@ -57,8 +57,9 @@ struct BallScene : ShadowTest {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a square before the light shades twice its size at twice its distance"
-                    * technique("shadow.map")) {
+    ShadowTest,
+    "shadow map: a square in front of the light shadows twice its size at twice its distance"
+        * technique("shadow.map")) {
     put(make_plane({.size = {0.5f, 0.5f}}), {0, -1, 0});
     put(make_plane({.size = {6, 6}}), {0, -2, 0});
     const Shadow shadow = {.filter = ShadowFilter::Hard, .resolution = 256};
@@ -68,20 +69,20 @@ TEST_CASE_FIXTURE(
     const double texel = texel_at(shadow, radians(45.0f), 2);
     int dark = 0;
     for (const Receiver& r : receivers(lamp, look({2.2f, -1.2f, 0}, {0, -2, 0}, 128, 128))) {
-        if (!r.there || r.position.y > -1.9) {
+        if (!r.valid || r.position.y > -1.9) {
             continue;
         }
         const double edge = std::max(std::abs(r.position.x), std::abs(r.position.z)) - 0.5;
         if (std::abs(edge) > texel) {
-            CHECK(r.seen == test::near(edge < 0 ? 0 : 1));
+            CHECK(r.visibility == test::near(edge < 0 ? 0 : 1));
         }
-        dark += r.seen < 0.5 ? 1 : 0;
+        dark += r.visibility < 0.5 ? 1 : 0;
     }
     CHECK(dark > 100);
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a lone plane has no acne up to 60 degrees; without a bias it has at 45"
+    ShadowTest, "shadow map: a plane has no acne up to 60 degrees; without the bias it has at 45"
                     * technique("shadow.map")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const RenderView view = look({0, 2, 0.01f}, {0, 0, 0}, 96, 96);
@@ -91,7 +92,7 @@ TEST_CASE_FIXTURE(
         world.add(lamp, shadow);
         int dark = 0;
         for (const Receiver& r : receivers(lamp, view)) {
-            dark += r.there && r.seen < 0.999 ? 1 : 0;
+            dark += r.valid && r.visibility < 0.999 ? 1 : 0;
         }
         world.destroy(lamp);
         return dark;
@@ -110,7 +111,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "shadow map: over 64 directions neither acne nor a shadow off its caster by 2 texels"
+    BallScene, "shadow map: over 64 directions neither acne nor a shadow detached by 2 texels"
                    * technique("shadow.map")) {
     WrongPixels all;
     const oracle::ShadowScene rays(world);
@@ -119,7 +120,7 @@ TEST_CASE_FIXTURE(
         const Shadow shadow = {.filter = ShadowFilter::Bilinear, .resolution = 256};
         const Entity lamp = shine(even_spot(radians(20.0f)), pose);
         world.add(lamp, shadow);
-        const DVec3 from = place_of(pose);
+        const DVec3 from = position_in(pose);
         const WrongPixels wrong = wrong_pixels(
             receivers(lamp, view()), 2 * texel_at(shadow, radians(20.0f), 6),
             [&](const DVec3& p) { return glm::normalize(from - p); },
@@ -135,7 +136,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     BallScene,
-    "shadow map: what a spot does not reach is not in its shadow" * technique("shadow.map")) {
+    "shadow map: points outside a spot's cone are not in its shadow" * technique("shadow.map")) {
     const Affine pose = look_at({0, 3, 0}, {0, 0, 0});
     const Entity lamp = shine(even_spot(radians(8.0f)), pose);
     world.add(lamp, Shadow{.filter = ShadowFilter::Hard, .resolution = 64});
@@ -144,14 +145,14 @@ TEST_CASE_FIXTURE(
     for (const Receiver& r : receivers(lamp, view())) {
         const DVec3 down = r.position - DVec3(0, 3, 0);
         const double angle = std::atan2(glm::length(DVec3(down.x, 0, down.z)), -down.y);
-        if (r.there && angle > radians(9.0f)) {
-            CHECK(r.seen == test::near(1));
+        if (r.valid && angle > radians(9.0f)) {
+            CHECK(r.visibility == test::near(1));
         }
     }
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: moving all of it together changes nothing" * technique("shadow.map")) {
+    ShadowTest, "shadow map: moving the whole scene changes nothing" * technique("shadow.map")) {
     const MeshId floor = add(make_plane({.size = {6, 6}}));
     const MeshId box = add(make_box({.size = {0.5f, 0.8f, 0.5f}}));
     const auto picture = [&](const Vec3& by) {
@@ -170,13 +171,13 @@ TEST_CASE_FIXTURE(
     const auto there = picture({16, -8, 32});
     int different = 0;
     for (std::size_t i = 0; i < here.size(); ++i) {
-        different += std::abs(here[i].seen - there[i].seen) > 0.02 ? 1 : 0;
+        different += std::abs(here[i].visibility - there[i].visibility) > 0.02 ? 1 : 0;
     }
     CHECK(different < 10);  // of 4096: rounding at edges
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: an edge is where the geometry says, to a texel's diagonal"
+    ShadowTest, "shadow map: a shadow edge is at its geometric position, within a texel's diagonal"
                     * technique("shadow.map-aliasing")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_box({.size = {1, 1, 1}}), {0, 0.5f, 0});
@@ -189,8 +190,8 @@ TEST_CASE_FIXTURE(
         const WrongPixels wrong = wrong_pixels(
             receivers(lamp, look({0, 4, 3}, {0, 0, 0}, 128, 128)),
             1.4142 * texel_at(shadow, radians(25.0f), 5.4),
-            [&](const DVec3& p) { return glm::normalize(place_of(pose) - p); },
-            [&](const DVec3& p) { return rays.blocked(p, place_of(pose)); });
+            [&](const DVec3& p) { return glm::normalize(position_in(pose) - p); },
+            [&](const DVec3& p) { return rays.blocked(p, position_in(pose)); });
         CAPTURE(resolution);
         CHECK(wrong.acne <= 1);
         CHECK(wrong.floating <= 1);
@@ -225,14 +226,13 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: blended surfaces receive shadows and 
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "shadow map: a light sees no caster that was told to cast none"
-                   * technique("shadow.selection")) {
+    BallScene, "shadow map: an entity with NoShadow casts none" * technique("shadow.selection")) {
     const Entity lamp = shine(even_spot(radians(30.0f)), look_at({1, 4, 1}, {0, 0, 0}));
     world.add(lamp, Shadow{});
     const auto dark = [&] {
         int count = 0;
         for (const Receiver& r : receivers(lamp, view())) {
-            count += r.there && r.seen < 0.5 ? 1 : 0;
+            count += r.valid && r.visibility < 0.5 ? 1 : 0;
         }
         return count;
     };
@@ -247,8 +247,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: the layer of its texels is what the geometry says they are"
-                    * technique("shadow.map-aliasing")) {
+    ShadowTest,
+    "shadow map: the AOV of its texels matches the geometry" * technique("shadow.map-aliasing")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const RenderView view = look({0.3f, 2.5f, 1.5f}, {0, 0, 0}, 64, 64);
     const auto texels = [&] { return aov(view, "shadow_texels"); };
@@ -284,9 +284,8 @@ TEST_CASE_FIXTURE(
 // ------------------------------------------------------------------------------------
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow map: a ring of casters around a point light has no gap at the seams of the faces"
-        * technique("shadow.map-omni")) {
+    ShadowTest, "shadow map: a ring of casters around a point light has no gap at face seams"
+                    * technique("shadow.map-omni")) {
     // A tube around the light: its shadow on the wall behind it must close.
     put(make_cylinder({.radius = 0.5f, .height = 0.4f, .caps = false}), {0, 0, 0});
     put(make_cylinder({.radius = 2, .height = 3, .segments = 128, .caps = false}), {0, 0, 0});
@@ -300,12 +299,12 @@ TEST_CASE_FIXTURE(
             const auto all = receivers(lamp, look({0, 1.0f, 0}, glm::normalize(toward), 96, 96));
             for (const Receiver& r : all) {
                 const double radius = std::hypot(r.position.x, r.position.z);
-                if (!r.there || radius < 1.9) {
+                if (!r.valid || radius < 1.9) {
                     continue;
                 }
                 const double edge = std::abs(r.position.y) - 0.2 * radius / 0.5;
                 if (std::abs(edge) > 4 * texel) {
-                    CHECK(r.seen == test::near(edge < 0 ? 0 : 1));
+                    CHECK(r.visibility == test::near(edge < 0 ? 0 : 1));
                     dark += edge < 0 ? 1 : 0;
                 }
             }
@@ -315,11 +314,12 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow map: six faces agree with rays on 98 % of the pixels" * technique("shadow.map-omni")) {
+    ShadowTest, "shadow map: six faces agree with ray casts on 98 % of the pixels"
+                    * technique("shadow.map-omni")) {
     put(make_plane({.size = {6, 6}}), {0, 0, 0});
-    for (const Vec3& place : {Vec3(1, 0.4f, 0.3f), Vec3(-0.8f, 0.5f, 0.9f), Vec3(0.1f, 0.3f, -1)}) {
-        put(make_box({.size = {0.3f, 0.8f, 0.3f}}), place);
+    for (const Vec3& position :
+         {Vec3(1, 0.4f, 0.3f), Vec3(-0.8f, 0.5f, 0.9f), Vec3(0.1f, 0.3f, -1)}) {
+        put(make_box({.size = {0.3f, 0.8f, 0.3f}}), position);
     }
     const oracle::ShadowScene rays(world);
     const Entity lamp = shine(PointLight{.radius = 0}, at({0, 1, 0}));
@@ -329,7 +329,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: turned by 90 degrees six faces give the same image"
+    ShadowTest, "shadow map: rotated by 90 degrees six faces give the same image"
                     * technique("shadow.map-omni")) {
     const MeshId floor = add(make_box({.size = {6, 0.2f, 6}}));
     const MeshId post = add(make_box({.size = {0.3f, 0.8f, 0.5f}}));
@@ -356,8 +356,8 @@ TEST_CASE_FIXTURE(
         int different = 0;
         int dark = 0;
         for (std::size_t i = 0; i < straight.size(); ++i) {
-            different += std::abs(straight[i].seen - turned[i].seen) > 0.01 ? 1 : 0;
-            dark += straight[i].seen < 0.5 ? 1 : 0;
+            different += std::abs(straight[i].visibility - turned[i].visibility) > 0.01 ? 1 : 0;
+            dark += straight[i].visibility < 0.5 ? 1 : 0;
         }
         CAPTURE(axis.x);
         CAPTURE(axis.y);
@@ -367,7 +367,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a wide spot is served by six faces, and lights what its cone holds") {
+    ShadowTest, "shadow map: a wide spot uses six faces and lights the inside of its cone") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     put(make_box({.size = {0.4f, 0.4f, 0.4f}}), {1.2f, 0.2f, 0});
     const oracle::ShadowScene rays(world);
@@ -404,7 +404,7 @@ struct ColumnScene : ShadowTest {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades agree with rays on 98 % of the pixels") {
+TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades agree with ray casts on 98 % of the pixels") {
     const oracle::ShadowScene rays(world);
     for (const int cascades : {1, 3, 4}) {
         world.add(sun, Shadow{.resolution = 512, .cascades = cascades, .distance = 25});
@@ -424,9 +424,8 @@ TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades agree with rays on 98 % of 
 }
 
 TEST_CASE_FIXTURE(
-    ColumnScene,
-    "shadow map: no shimmer, texels of the edges keep their value when the camera moves"
-        * technique("shadow.map")) {
+    ColumnScene, "shadow map: edges do not shimmer: texels keep their value when the camera moves"
+                     * technique("shadow.map")) {
     // From straight above, moved by whole pixels of the floor: a quarter of a texel each.
     constexpr int kSize = 128;
     const auto from = [&](int pixels) {
@@ -443,13 +442,13 @@ TEST_CASE_FIXTURE(
                 for (int x = step; x < kSize; ++x) {
                     const Receiver& there = before[static_cast<std::size_t>(y * kSize + x)];
                     const Receiver& here = after[static_cast<std::size_t>(y * kSize + x - step)];
-                    if (!there.there || !here.there
+                    if (!there.valid || !here.valid
                         || glm::distance(there.position, here.position) > 1e-3) {
-                        continue;  // a column, seen from elsewhere
+                        continue;  // a column, viewed from elsewhere
                     }
                     const Receiver& left = before[static_cast<std::size_t>(y * kSize + x - 1)];
-                    edges += std::abs(there.seen - left.seen) > 0.05 ? 1 : 0;
-                    CHECK(here.seen == test::near(there.seen).epsilon(0.01));
+                    edges += std::abs(there.visibility - left.visibility) > 0.05 ? 1 : 0;
+                    CHECK(here.visibility == test::near(there.visibility).epsilon(0.01));
                 }
             }
         }
@@ -457,7 +456,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades go over into each other without a step") {
+TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades blend into each other without a step") {
     // A floor half covered by a roof far above it: its shadow's edge must cross the splits whole,
     // and no pixel away from it may notice them.
     world.add(
@@ -494,7 +493,7 @@ ImageData checkerboard(int cells) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a grid of holes shades half of its footprint, as rays say"
+    ShadowTest, "shadow map: a lattice shadows half of its footprint, in agreement with ray casts"
                     * technique("shadow.map-alpha")) {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     const MaterialId grid = add(Material{
@@ -510,14 +509,15 @@ TEST_CASE_FIXTURE(
     const Entity lamp = shine(even_spot(radians(25.0f)), pose);
     world.add(lamp, Shadow{.resolution = 512});
     const auto all = receivers(lamp, look({0, 1.2f, 2.6f}, {0, 0, 0}, 128, 128));
-    CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, place_of(pose)); }) >= 0.98);
+    CHECK(
+        agreement(all, [&](const DVec3& p) { return rays.blocked(p, position_in(pose)); }) >= 0.98);
     // Inside its footprint on the floor half is dark.
     double dark = 0;
     int count = 0;
     for (const Receiver& r : all) {
-        const DVec3 on_grid = r.position + (1.5 / 5) * (place_of(pose) - r.position);
-        if (r.there && r.position.y < 0.01 && std::abs(on_grid.x) < 1 && std::abs(on_grid.z) < 1) {
-            dark += 1 - r.seen;
+        const DVec3 on_grid = r.position + (1.5 / 5) * (position_in(pose) - r.position);
+        if (r.valid && r.position.y < 0.01 && std::abs(on_grid.x) < 1 && std::abs(on_grid.z) < 1) {
+            dark += 1 - r.visibility;
             ++count;
         }
     }
@@ -526,7 +526,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: a fan's shadow turns with it, and repeats with its blades"
+    ShadowTest, "shadow map: a fan's shadow rotates with it, and repeats with its blades"
                     * technique("shadow.map-alpha")) {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     const MeshId blade = add(make_box({.size = {0.8f, 0.02f, 0.2f}}));
@@ -552,7 +552,8 @@ TEST_CASE_FIXTURE(
     const oracle::ShadowScene rays(world);
     const auto first = receivers(lamp, view);
     CHECK(
-        agreement(first, [&](const DVec3& p) { return rays.blocked(p, place_of(pose)); }) >= 0.98);
+        agreement(first, [&](const DVec3& p) { return rays.blocked(p, position_in(pose)); })
+        >= 0.98);
     turn(0.3f + 2 * kPi / 3);
     const auto same = receivers(lamp, view);
     turn(0.3f + kPi / 3);
@@ -560,9 +561,12 @@ TEST_CASE_FIXTURE(
     int changed = 0;
     int moved = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {
-        changed +=
-            first[i].there && same[i].there && std::abs(first[i].seen - same[i].seen) > 0.1 ? 1 : 0;
-        moved += first[i].there && other[i].there && std::abs(first[i].seen - other[i].seen) > 0.1
+        changed += first[i].valid && same[i].valid
+                           && std::abs(first[i].visibility - same[i].visibility) > 0.1
+                       ? 1
+                       : 0;
+        moved += first[i].valid && other[i].valid
+                         && std::abs(first[i].visibility - other[i].visibility) > 0.1
                      ? 1
                      : 0;
     }
@@ -575,7 +579,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ShadowTest,
-    "shadow map: only views in which something moved are drawn again" * technique("shadow.map")) {
+    "shadow map: only views in which a caster moved are redrawn" * technique("shadow.map")) {
     put(make_plane({.size = {20, 4}}), {0, 0, 0});
     const MeshId box = add(make_box({.size = {0.4f, 0.4f, 0.4f}}));
     std::vector<Entity> boxes;
@@ -589,8 +593,8 @@ TEST_CASE_FIXTURE(
     const Entity point = shine(PointLight{.radius = 1.5f}, at({-6, 1.5f, 0}));
     world.add(point, Shadow{.resolution = 64});
     const RenderView view = look({0, 5, 8}, {0, 0, 0}, 32, 32);
-    const auto drawn = [&](const RenderView& seen) {
-        return draw(seen).statistics.shadow_views_drawn;
+    const auto drawn = [&](const RenderView& moved) {
+        return draw(moved).statistics.shadow_views_drawn;
     };
     draw(view);
     CHECK(draw(view).statistics.shadow_views == 10);
@@ -619,14 +623,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ColumnScene, "shadow map: a cascade is drawn again when a caster in it moves, not the others") {
+    ColumnScene, "shadow map: a cascade is redrawn when a caster in it moves, the others are not") {
     world.add(sun, Shadow{.resolution = 128, .cascades = 3, .distance = 25});
     const MeshId box = add(make_box({.size = {0.3f, 0.3f, 0.3f}}));
     const Entity near = place(box, white, at({0.5f, 1.5f, 5}));
-    const Entity middle = place(box, white, at({0, 0.5f, -8}));
+    const Entity center_box = place(box, white, at({0, 0.5f, -8}));
     const Entity far = place(box, white, at({0, 0.5f, -26}));
-    const auto drawn = [&](const RenderView& seen) {
-        return draw(seen).statistics.shadow_views_drawn;
+    const auto drawn = [&](const RenderView& moved) {
+        return draw(moved).statistics.shadow_views_drawn;
     };
     draw(view());
     CHECK(draw(view()).statistics.shadow_views == 3);
@@ -637,7 +641,7 @@ TEST_CASE_FIXTURE(
     };
     move(far, {0.1f, 0.5f, -26});
     CHECK(drawn(view()) == 1);
-    move(middle, {0.1f, 0.5f, -8});
+    move(center_box, {0.1f, 0.5f, -8});
     CHECK(drawn(view()) == 2);
     move(near, {0.6f, 1.5f, 5});  // the balls about the slices are one in the other
     CHECK(drawn(view()) == 3);
@@ -655,8 +659,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ShadowTest,
-    "shadow map: with casters culled by the light's range the image is that of all of them") {
+    ShadowTest, "shadow map: culling casters by the light's range does not change the image") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     std::mt19937 random(7);
     std::uniform_real_distribution<float> along(-3, 3);
@@ -676,7 +679,7 @@ TEST_CASE_FIXTURE(
 // ---- bad input
 // ------------------------------------------------------------------------------------
 
-TEST_CASE("shadow map: numbers that make no sense are replaced by some that do") {
+TEST_CASE("shadow map: invalid settings are replaced by valid ones") {
     const Shadow cleaned = sanitize(
         {.resolution = -5,
          .source_size = std::nanf(""),
@@ -696,7 +699,7 @@ TEST_CASE("shadow map: numbers that make no sense are replaced by some that do")
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "shadow map: broken lights and a light inside a caster draw finite images") {
+    BallScene, "shadow map: invalid lights and a light inside a caster give finite images") {
     const auto finite = [&] {
         const gpu::FloatImage image = radiance(view());
         for (const float value : image.pixels) {
@@ -727,14 +730,13 @@ TEST_CASE_FIXTURE(
     const Entity inside = shine(PointLight{}, at({0, 0.5f, 0}));
     world.add(inside, Shadow{.source_size = 0.1f});
     for (const Receiver& r : receivers(inside, view())) {
-        if (r.there && r.position.y < 0.001 && std::hypot(r.position.x, r.position.z) > 0.3) {
-            CHECK(r.seen < 0.5);
+        if (r.valid && r.position.y < 0.001 && std::hypot(r.position.x, r.position.z) > 0.3) {
+            CHECK(r.visibility < 0.5);
         }
     }
 }
 
-TEST_CASE_FIXTURE(
-    ShadowTest, "shadow map: lights that find no room in the atlas shine without a shadow") {
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: lights that do not fit into the atlas cast no shadow") {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
     std::vector<Entity> lamps;
     for (int i = 0; i < 2; ++i) {  // twelve faces of 4096 are three atlases

@@ -101,7 +101,7 @@ bool inside_cube(const DVec3& p, double half = 0.5) {
 }  // namespace
 
 TEST_CASE(
-    "shadow_mesh: the cube is closed and has 18 edges, a triangle less opens 3"
+    "shadow_mesh: the cube is closed and has 18 edges; removing a triangle opens 3"
     * technique("shadow.closed-mesh")) {
     MeshData cube = make_cube();
     const ShadowMesh whole = make_shadow_mesh(cube);
@@ -117,7 +117,7 @@ TEST_CASE(
     CHECK(describe(open.report) == "3 open edges");
 }
 
-TEST_CASE("shadow_mesh: seams of texture coordinates are no edges of the solid") {
+TEST_CASE("shadow_mesh: seams of texture coordinates are not edges of the solid") {
     MeshData cube = make_cube();
     MeshData apart;
     for (const std::uint32_t index : cube.indices) {
@@ -136,7 +136,7 @@ TEST_CASE("shadow_mesh: seams of texture coordinates are no edges of the solid")
     CHECK_FALSE(is_closed(make_shadow_mesh(apart).report));
 }
 
-TEST_CASE("shadow_mesh: what is duplicated, crowded, inside out or collapsed is told apart") {
+TEST_CASE("shadow_mesh: duplicate, crowded, inside-out and collapsed triangles are distinguished") {
     MeshData cube = make_cube();
     cube.indices.insert(cube.indices.end(), {0, 2, 3});
     ManifoldReport report = make_shadow_mesh(cube).report;
@@ -158,7 +158,7 @@ TEST_CASE("shadow_mesh: what is duplicated, crowded, inside out or collapsed is 
     CHECK(is_closed(report));
 }
 
-TEST_CASE("shadow_mesh: broken meshes are open, never a crash") {
+TEST_CASE("shadow_mesh: invalid meshes are open and never crash") {
     CHECK_FALSE(is_closed(make_shadow_mesh(MeshData{}).report));
     CHECK(describe(make_shadow_mesh(MeshData{}).report) == "no triangles");
     MeshData cube = make_cube();
@@ -174,7 +174,7 @@ TEST_CASE("shadow_mesh: the teapot of separate patches is open" * technique("sha
     CHECK(teapot.report.open_edges > 0);
 }
 
-TEST_CASE("shadow_mesh: in an edge's quad the way of the first triangle is against the edge") {
+TEST_CASE("shadow_mesh: in an edge's quad the first triangle runs against the edge") {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     for (const ShadowEdge& edge : cube.edges) {
         const auto runs = [&](std::uint32_t triangle, std::uint32_t from, std::uint32_t to) {
@@ -188,7 +188,7 @@ TEST_CASE("shadow_mesh: in an edge's quad the way of the first triangle is again
 }
 
 TEST_CASE(
-    "shadow_mesh: the volume of an edge mesh closes, looks outward and is 8/2 n triangles"
+    "shadow_mesh: an edge volume is closed, faces outward and has 8/2 n triangles"
     * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const VolumeGeometry geometry = make_edge_volume(cube);
@@ -204,7 +204,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: a cube lit from above opens 4 edges to 20 triangles, from a corner 6 to 24"
+    "shadow_mesh: a cube lit from above opens 4 edges, 20 triangles; from a corner 6, 24"
     * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const VolumeGeometry geometry = make_edge_volume(cube);
@@ -219,7 +219,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: quads of edges within the lit or the dark part have no area"
+    "shadow_mesh: quads of edges inside the lit or the dark part have no area"
     * technique("shadow.vol-per-edge")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     VolumeGeometry geometry = make_edge_volume(cube);
@@ -237,7 +237,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: the sign the book prints turns the volume inside out"
+    "shadow_mesh: the sign printed in the book turns the volume inside out"
     * technique("shadow.vol-per-edge")) {
     const VolumeGeometry geometry = make_edge_volume(make_shadow_mesh(make_cube()));
     const DVec3 light = {3, 10, 2};
@@ -248,7 +248,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: with its normals exchanged an edge's quad leaves the surface unclosed"
+    "shadow_mesh: with swapped normals an edge's quad leaves the surface open"
     * technique("shadow.vol-per-edge")) {
     ShadowMesh cube = make_shadow_mesh(make_cube());
     for (ShadowEdge& edge : cube.edges) {
@@ -259,7 +259,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: a prism has 2 caps and 3 quads on 6 vertices and 12 edges, and closes"
+    "shadow_mesh: a prism has 2 caps, 3 quads, 6 vertices and 12 edges, and is closed"
     * technique("shadow.vol-per-triangle, shadow.volume-count")) {
     MeshData mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -300,7 +300,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_mesh: prisms of an open mesh close where its edges would leak"
+    "shadow_mesh: prisms of an open mesh are closed where an edge volume would leak"
     * technique("shadow.closed-mesh")) {
     MeshData cube = make_cube();
     cube.indices.resize(cube.indices.size() - 3);
@@ -325,7 +325,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_volume: counting agrees with rays at 4000 points about a cube"
+    "shadow_volume: counting agrees with ray casts at 4000 points around a cube"
     * technique("shadow.volume-count")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const DVec3 light = {3, 10, 2};
@@ -348,7 +348,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_volume: z-fail counts z-pass and the volumes about the eye, exactly"
+    "shadow_volume: z-fail counts exactly z-pass plus the volumes around the eye"
     * technique("shadow.volume-count")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     std::vector<DTriangle> volumes;
@@ -372,7 +372,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow_volume: within k nested volumes the count is k, outside of all 0"
+    "shadow_volume: inside k nested volumes the count is k, outside all of them 0"
     * technique("shadow.volume-count")) {
     std::vector<DTriangle> volumes;
     const DVec3 light = {0, 10, 0};
@@ -391,7 +391,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "silhouette: on closed meshes it is made of loops, on convex ones of one"
+    "silhouette: on closed meshes it consists of loops, on convex ones of a single loop"
     * technique("shadow.silhouette")) {
     Points points;
     const MeshData torus = make_torus({});
@@ -428,10 +428,10 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "silhouette: it runs counter-clockwise about the lit part, seen from the light"
+    "silhouette: it runs counter-clockwise around the lit part, viewed from the light"
     * technique("shadow.silhouette")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
-    float area = 0;  // of its projection to the ground, seen from above
+    float area = 0;  // of its projection to the ground, viewed from above
     for (const SilhouetteEdge& edge : find_silhouette(cube, {0, 10, 0, 1})) {
         const Vec3& a = cube.positions[edge.begin];
         const Vec3& b = cube.positions[edge.end];
@@ -441,14 +441,14 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "silhouette: a light inside a closed mesh sees no edge of it"
+    "silhouette: for a light inside a closed convex mesh it is empty"
     * technique("shadow.silhouette")) {
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     CHECK(find_silhouette(cube, {0.1f, 0.2f, -0.1f, 1}).empty());
 }
 
 TEST_CASE(
-    "extrusion: corners move away from the light by the distance, near ones by the bias"
+    "extrusion: far corners move away from the light by the distance, near ones by the bias"
     * technique("shadow.vol-extrude")) {
     using layout::shift_from_light;
     const Vec4 light = {0, 10, 0, 1};
@@ -473,7 +473,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "extrusion: to the end of the world a corner is the direction away from the light"
+    "extrusion: to infinity a corner becomes the direction away from the light"
     * technique("shadow.vol-extrude")) {
     using namespace layout;
     const Vec4 infinite = {kExtrudeInfinite, 0, 0, 0};
@@ -488,15 +488,15 @@ TEST_CASE(
     const Vec4 light = {0, 0, 0, 1};
     const Vec3 a = {-1, -1, 0};
     const Vec3 b = {1, -1, 0};
-    const auto middle = [&](const Vec4& extrusion) {
+    const auto cap_distance = [&](const Vec4& extrusion) {
         const Vec4 far_a = extrude_corner(a, light, extrusion, 1);
         const Vec4 far_b = extrude_corner(b, light, extrusion, 1);
         CHECK(far_a.w == 1);
         return 0.5f * glm::length(Vec3(far_a) + Vec3(far_b));
     };
     // The interval 7.0711 .. 10 below the light is wrongly lit.
-    CHECK(middle({kExtrudeRadius, 10, 0, 0}) == test::near(10 * std::cos(kPi / 4)));
-    CHECK(middle({kExtrudePlane, 10, 0, 0}) == test::near(10));
+    CHECK(cap_distance({kExtrudeRadius, 10, 0, 0}) == test::near(10 * std::cos(kPi / 4)));
+    CHECK(cap_distance({kExtrudePlane, 10, 0, 0}) == test::near(10));
     CHECK(
         glm::distance(
             Vec3(extrude_corner(a, light, {kExtrudePlane, 10, 0, 0}, 1)), Vec3(-10, -10, 0))
@@ -504,8 +504,8 @@ TEST_CASE(
     // A constant distance leaks below R / cos(theta) - d and not above.
     const float least = 10 / std::cos(kPi / 4) - std::sqrt(2.0f);
     CHECK(least == test::near(12.728).epsilon(1e-4));
-    CHECK(middle({kExtrudeConstant, least - 0.01f, 0, 0}) < 10);
-    CHECK(middle({kExtrudeConstant, least + 0.01f, 0, 0}) > 10);
+    CHECK(cap_distance({kExtrudeConstant, least - 0.01f, 0, 0}) < 10);
+    CHECK(cap_distance({kExtrudeConstant, least + 0.01f, 0, 0}) > 10);
     // A plane through the light cannot be pushed out: infinite; one beyond the radius stays.
     CHECK(extrude_corner(a, light, {kExtrudePlane, 10, 0, 0}, 0).w == 0);
     CHECK(Vec3(extrude_corner(a, light, {kExtrudePlane, 10, 0, 0}, 12)) == a);

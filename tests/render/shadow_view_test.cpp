@@ -28,15 +28,15 @@ layout::ShadowViewRecord record_of(const ShadowView& view) {
     return make_shadow_record(view, kPlace, 0, 0.1f, 1);
 }
 
-Vec3 random_point(std::mt19937& random, float reach) {
-    std::uniform_real_distribution<float> along(-reach, reach);
+Vec3 random_point(std::mt19937& random, float extent) {
+    std::uniform_real_distribution<float> along(-extent, extent);
     return {along(random), along(random), along(random)};
 }
 
 }  // namespace
 
 TEST_CASE(
-    "shadow view: clip space goes to the view's square of the atlas, corner by corner"
+    "shadow view: clip space maps to the view's square of the atlas, corner by corner"
     * technique("shadow.projective-matrix")) {
     ShadowView view;
     view.resolution = 128;
@@ -47,7 +47,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow view: a point on the light's axis is in the middle, at near / distance"
+    "shadow view: a point on the light's axis is at the center, with depth near / distance"
     * technique("shadow.projective-matrix")) {
     const Vec3 eye = {1, 2, 3};
     const Vec3 axis = glm::normalize(Vec3(0.3f, -0.8f, 0.2f));
@@ -62,7 +62,7 @@ TEST_CASE(
     CHECK(project(record, eye - axis).w < 0);  // behind the light: no projection
 }
 
-TEST_CASE("shadow view: what a spot lights lies within its square, and a border is left") {
+TEST_CASE("shadow view: all that a spot lights is inside its square, with a border") {
     const float angle = radians(30.0f);
     const auto record = record_of(make_spot_view({0, 0, 0}, {0, 0, -1}, angle, 0.1f, 128, 4));
     for (int i = 0; i < 16; ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("shadow view: what a spot lights lies within its square, and a border 
     }
 }
 
-TEST_CASE("shadow view: a spot's rows run as it is turned, across its axis") {
+TEST_CASE("shadow view: a spot's rows follow its rotation, perpendicular to its axis") {
     const Vec3 axis = glm::normalize(Vec3(0.3f, -0.8f, 0.2f));
     const auto moved = [&](const Vec3& right, const Vec3& by) {
         const auto record =
@@ -85,7 +85,7 @@ TEST_CASE("shadow view: a spot's rows run as it is turned, across its axis") {
         CHECK(moved(right, across).x > 1);
         CHECK(moved(right, across).y == test::near(0).scale(1).epsilon(1e-3));
     }
-    // Without a way across, any will do.
+    // Without a preferred direction, any will do.
     for (const Vec3& right : {Vec3(0, 0, 0), axis}) {
         CHECK(glm::length(moved(right, {0.1f, 0, 0.1f})) > 1);
     }
@@ -100,16 +100,16 @@ TEST_CASE(
         const Vec3 a = random_point(random, 3);
         const Vec3 b = random_point(random, 3);
         for (const Vec4& row : {record.row_s, record.row_t, record.row_r, record.row_q}) {
-            const float middle = glm::dot(row, Vec4(0.5f * (a + b), 1));
+            const float midpoint = glm::dot(row, Vec4(0.5f * (a + b), 1));
             CHECK(
-                middle
+                midpoint
                 == test::near(0.5f * (glm::dot(row, Vec4(a, 1)) + glm::dot(row, Vec4(b, 1))))
                        .epsilon(1e-3));
         }
     }
 }
 
-TEST_CASE("shadow view: a plane's slope is that between its points") {
+TEST_CASE("shadow view: a plane's slope matches differences between its points") {
     std::mt19937 random(2);
     const RenderView camera =
         make_render_view({}, look_at({0, 2, 5}, {0, 0, 0}), look_at({0, 2, 5}, {0, 0, 0}));
@@ -139,7 +139,7 @@ TEST_CASE("shadow view: a plane's slope is that between its points") {
 }
 
 TEST_CASE(
-    "shadow view: six faces see every direction, with a border each"
+    "shadow view: six faces cover every direction, with a border each"
     * technique("shadow.map-omni")) {
     std::mt19937 random(3);
     std::array<layout::ShadowViewRecord, 6> faces;
@@ -166,7 +166,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow view: a face's depth tells the book's, with a far plane, along the major axis"
+    "shadow view: a face's depth converts to the book's, with a far plane on the major axis"
     * technique("shadow.map-omni")) {
     // z_w = f / (f - n) (1 - n / m), of which ours is n / m: no far plane, and finest where far.
     const double near = 0.1;
@@ -184,7 +184,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "shadow view: cascades cover the distance without a gap, the near ones shorter"
+    "shadow view: cascades cover the distance without a gap, near ones are shorter"
     * technique("shadow.map-aliasing")) {
     for (int count = 1; count <= kMaxCascades; ++count) {
         const auto ends = split_cascades(0.5f, 60, count);
@@ -204,19 +204,19 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("shadow view: a cascade holds all that the camera sees of its slice") {
+TEST_CASE("shadow view: a cascade contains all of its slice of the camera's view") {
     std::mt19937 random(4);
-    std::uniform_real_distribution<float> share(0, 1);
+    std::uniform_real_distribution<float> unit(0, 1);
     for (int round = 0; round < 40; ++round) {
         const Affine pose = look_at(random_point(random, 20), random_point(random, 20));
         const RenderView camera = make_render_view({}, pose, pose, {.width = 320, .height = 180});
         const Vec3 sun = normalize_or(random_point(random, 1), {0, 1, 0});
         const auto record = record_of(make_cascade_view(camera, sun, 2, 9, 128, 2));
         for (int i = 0; i < 50; ++i) {
-            const float z = 2 + 7 * share(random);
+            const float z = 2 + 7 * unit(random);
             const Vec3 in_view = {
-                (2 * share(random) - 1) * camera.tangent.x * z,
-                (2 * share(random) - 1) * camera.tangent.y * z, -z};
+                (2 * unit(random) - 1) * camera.tangent.x * z,
+                (2 * unit(random) - 1) * camera.tangent.y * z, -z};
             const Vec4 at = project(record, transform_point(pose, in_view));
             CHECK(std::abs(at.x - 320) <= 63.5f);
             CHECK(std::abs(at.y - 576) <= 63.5f);
@@ -226,8 +226,7 @@ TEST_CASE("shadow view: a cascade holds all that the camera sees of its slice") 
     }
 }
 
-TEST_CASE(
-    "shadow view: what shades a slice of the view is inside its planes, what does not mostly out") {
+TEST_CASE("shadow view: casters into a slice are inside its planes, others mostly outside") {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0, 1);
     const auto inside = [](const Frustum& planes, const Vec3& p) {
@@ -254,7 +253,7 @@ TEST_CASE(
         const float near = view % 2 == 0 ? 0.0f : 8.0f;
         const float far = 20;
         const Frustum planes = shading_planes(camera, to_sun, near, far, 0.01);
-        const auto seen = [&](const Vec3& p) {
+        const auto in_view = [&](const Vec3& p) {
             const Vec3 local = glm::conjugate(turn) * (p - eye);
             const float depth = -local.z;
             return depth >= near && depth <= far && std::abs(local.x) <= 0.64f * depth
@@ -274,7 +273,7 @@ TEST_CASE(
             const Vec3 caster = eye + turn * Vec3(0, 0, -14) + random_point(random, 20);
             bool shades = false;
             for (int step = 0; step < 400 && !shades; ++step) {
-                shades = seen(caster - 0.2f * static_cast<float>(step) * to_sun);
+                shades = in_view(caster - 0.2f * static_cast<float>(step) * to_sun);
             }
             const bool before = glm::dot(caster - (eye + turn * Vec3(0, 0, -14)), to_sun) > 0;
             if (!shades && before) {
@@ -288,7 +287,7 @@ TEST_CASE(
     CHECK(others_out > 0.85 * others);
 }
 
-TEST_CASE("shadow view: texels of a cascade stay where they are when the camera moves and turns") {
+TEST_CASE("shadow view: a cascade's texels stay in place when the camera moves and turns") {
     std::mt19937 random(5);
     const Vec3 sun = glm::normalize(Vec3(0.4f, 1, 0.3f));
     const Vec3 ground = {3, 0, -2};
@@ -312,10 +311,10 @@ TEST_CASE("shadow view: texels of a cascade stay where they are when the camera 
 }
 
 TEST_CASE(
-    "shadow view: twice the resolution is four times the texels a pixel"
+    "shadow view: twice the resolution is four times the texels per pixel"
     * technique("shadow.map-aliasing")) {
-    // Lamp and camera at one place, with one field of view: a texel a pixel, and what the ratio of
-    // the sizes makes of it.
+    // Lamp and camera at one position, with one field of view: a texel per pixel, and what the
+    // ratio of the sizes makes of it.
     const Affine pose = look_at({1, 2, 3}, {1, 2, 0});
     const RenderView camera =
         make_render_view({.fov_y = radians(60.0f)}, pose, pose, {.width = 256, .height = 256});
@@ -327,7 +326,7 @@ TEST_CASE(
         CHECK(
             texels_per_pixel(lamp, camera, {1, 2, -4}, {0, 0, 1})
             == test::near(ratio * ratio).epsilon(1e-5));
-        // From one place they see the same, however the surface is inclined.
+        // From one position they have the same view, however the surface is inclined.
         for (int i = 0; i < 20; ++i) {
             const Vec3 point = Vec3(1, 2, -3) + random_point(random, 1.5f);
             const Vec3 normal = glm::normalize(Vec3(0, 0, 3) + random_point(random, 1.5f));
@@ -341,19 +340,19 @@ TEST_CASE(
         {4, 5, -1}, glm::normalize(Vec3(-1, -1, -0.5f)), radians(50.0f), 0.1f, 512, 4);
     const layout::ShadowViewRecord record = make_shadow_record(lamp, {0, 0, 512}, 0, 0, 1);
     const float step = 2 * std::tan(radians(30.0f)) / 256;
-    const auto texel = [&](float x, float y) {  // of the floor y = 0, right of and above the middle
+    const auto texel = [&](float x, float y) {  // of the floor y = 0, right of and above the center
         const Vec3 ray = {0.2f + x * step, -0.7f + y * step, -1};
         return Vec2(project(record, Vec3(1, 2, 3) + ray * (2 / -ray.y)));
     };
     const Vec2 right = texel(0.5f, 0) - texel(-0.5f, 0);
     const Vec2 up = texel(0, 0.5f) - texel(0, -0.5f);
-    const Vec3 middle = Vec3(1, 2, 3) + Vec3(0.2f, -0.7f, -1) * (2 / 0.7f);
+    const Vec3 midpoint = Vec3(1, 2, 3) + Vec3(0.2f, -0.7f, -1) * (2 / 0.7f);
     CHECK(
-        texels_per_pixel(lamp, camera, middle, {0, 1, 0})
+        texels_per_pixel(lamp, camera, midpoint, {0, 1, 0})
         == test::near(std::abs(right.x * up.y - right.y * up.x)).epsilon(0.01));
 }
 
-TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-cull)") {
+TEST_CASE("culling: a box is kept if the light's sphere touches it (shadow.caster-cull)") {
     const Bounds box = {{2, 2, 2}, {3, 3, 3}};
     CHECK_FALSE(sphere_touches({0, 0, 0}, 3.4f, box));  // 11.56 < 12
     CHECK(sphere_touches({0, 0, 0}, 3.5f, box));        // 12.25 > 12

@@ -93,7 +93,7 @@ class VolumeScene : public test::Scene {
     MaterialId matte;
 };
 
-/// Which pixels a light reaches of those it would reach without shadows: -1 none of them.
+/// Per pixel: 1 lit, 0 in shadow, -1 unlit even without shadows.
 struct Visibility {
     std::vector<int> lit;
     int shadowed = 0;
@@ -144,14 +144,14 @@ int count_wrong(
             const DVec3 p = column(3) + d * (px * column(0) + py * column(1) - column(2))
                             + 1e-3 * DVec3(test::rgb_at(normal, x, y));
             const DVec3 to = light.w > 0 ? DVec3(Vec3(light)) : p + 100.0 * DVec3(Vec3(light));
-            const bool seen = !oracle::segment_hits(triangles, p, to);
-            wrong += seen == (lit == 1) ? 0 : 1;
+            const bool lit_by_rays = !oracle::segment_hits(triangles, p, to);
+            wrong += lit_by_rays == (lit == 1) ? 0 : 1;
         }
     }
     return wrong;
 }
 
-/// Their share.
+/// As a fraction of the pixels.
 double disagreement(
     VolumeScene& scene, const Visibility& found, const Vec4& light, const RenderView& view) {
     return static_cast<double>(count_wrong(scene, found, light, view)) / std::max(found.counted, 1);
@@ -160,12 +160,12 @@ double disagreement(
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: a point light's volumes agree with rays"
+    VolumeScene, "shadow_volume: a point light's volumes agree with ray casts"
                      * technique("shadow.stencil-pass, shadow.vol-per-triangle")) {
     add_floor();
     add_casters();
-    const Vec3 place = {1.5f, 4, 2};
-    const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at(place));
+    const Vec3 position = {1.5f, 4, 2};
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at(position));
     world.add(light, kVolumes);
     for (const Vec3& eye : {Vec3(0.3f, 2.2f, 4.1f), Vec3(-4, 3, -2), Vec3(0.2f, 6, 0.3f)}) {
         const RenderView view = from(eye);
@@ -175,14 +175,14 @@ TEST_CASE_FIXTURE(
                 const Visibility found = visibility(*this, light, view);
                 CHECK(found.shadowed > 200);
                 CHECK(found.counted > 5000);
-                CHECK(disagreement(*this, found, Vec4(place, 1), view) < 0.001);
+                CHECK(disagreement(*this, found, Vec4(position, 1), view) < 0.001);
             }
         }
     }
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: a sun's and a spot's volumes agree with rays"
+    VolumeScene, "shadow_volume: a sun's and a spot's volumes agree with ray casts"
                      * technique("shadow.stencil-pass")) {
     add_floor();
     add_casters();
@@ -196,34 +196,33 @@ TEST_CASE_FIXTURE(
         CHECK(disagreement(*this, found, Vec4(toward, 0), view) < 0.001);
     }
     SUBCASE("spot") {
-        const Vec3 place = {-2, 5, 3};
+        const Vec3 position = {-2, 5, 3};
         const Entity spot = shine(
             SpotLight{.intensity = 50, .radius = 12, .outer_angle = radians(35.0f)},
-            look_at(place, {0, 0.5f, 0}));
+            look_at(position, {0, 0.5f, 0}));
         world.add(spot, kVolumes);
         const Visibility found = visibility(*this, spot, view);
         CHECK(found.shadowed > 100);
-        CHECK(disagreement(*this, found, Vec4(place, 1), view) < 0.001);
+        CHECK(disagreement(*this, found, Vec4(position, 1), view) < 0.001);
     }
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene,
-    "shadow_volume: lights of small radius lose no shadow to scissor, depth bounds and culling"
-        * technique("shadow.caster-cull, shadow.depth-bounds")) {
+    VolumeScene, "shadow_volume: scissor, depth bounds and culling keep all shadows of small lights"
+                     * technique("shadow.caster-cull, shadow.depth-bounds")) {
     add_floor();
     add_boxes();  // no smooth shading, where it is a matter of taste what the light grazes
     // Between the light and the floor, so that the smallest light has shadows too.
     add_caster(cube, affine_from({-0.9f, 0.5f, 1.0f}, {1, 0, 0, 0}, Vec3(0.2f)));
     for (const float radius : {1.5f, 2.5f, 4.0f}) {
-        const Vec3 place = {-0.7f, 1.2f, 0.9f};
+        const Vec3 position = {-0.7f, 1.2f, 0.9f};
         const Entity light = shine(
-            PointLight{.radius = radius, .attenuation = {.falloff = Falloff::None}}, at(place));
+            PointLight{.radius = radius, .attenuation = {.falloff = Falloff::None}}, at(position));
         world.add(light, kVolumes);
         for (const Vec3& eye : {Vec3(0, 2, 4), Vec3(-1, 1.2f, 1.6f), Vec3(3, 0.7f, 2)}) {
-            const RenderView view = from(eye, place);
+            const RenderView view = from(eye, position);
             const Visibility found = visibility(*this, light, view);
-            const int wrong = count_wrong(*this, found, Vec4(place, 1), view);
+            const int wrong = count_wrong(*this, found, Vec4(position, 1), view);
             CAPTURE(radius);
             CHECK(found.shadowed > 5);
             CHECK(found.counted > found.shadowed);
@@ -234,19 +233,19 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: within volumes z-pass is off by one at every pixel, z-fail and "
-                 "auto are right") {
+    VolumeScene,
+    "shadow_volume: inside volumes z-pass is off by one everywhere, z-fail and auto are right") {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
-    const Vec3 place = {0, 6, 0};
-    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at(place));
+    const Vec3 position = {0, 6, 0};
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at(position));
     world.add(light, kVolumes);
     const RenderView view = from({0.3f, 1.2f, 0.4f}, {2.5f, 0.3f, 2.5f});
     world.add(light, ShadowVolume{.mode = StencilMode::Auto});
     const Visibility right = visibility(*this, light, view);
     CHECK(right.shadowed > 500);
     CHECK(right.counted - right.shadowed > 500);
-    CHECK(disagreement(*this, right, Vec4(place, 1), view) < 0.001);
+    CHECK(disagreement(*this, right, Vec4(position, 1), view) < 0.001);
     world.add(light, ShadowVolume{.mode = StencilMode::ZPass});
     const Visibility off = visibility(*this, light, view);
     for (std::size_t i = 0; i < off.lit.size(); ++i) {
@@ -257,7 +256,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     VolumeScene,
-    "shadow_volume: from outside of all volumes z-pass, z-fail and prisms are one image") {
+    "shadow_volume: from outside all volumes z-pass, z-fail and prisms give one image") {
     add_floor();
     add_casters();
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({1.5f, 4, 2}));
@@ -289,24 +288,24 @@ TEST_CASE_FIXTURE(
         <= kWidth * kHeight / 1000);
 }
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: where the near plane cuts a volume the image stays right"
+    VolumeScene, "shadow_volume: where the near plane cuts a volume the image is still right"
                      * technique("shadow.stencil-pass")) {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
-    const Vec3 place = {0, 6, 0};
-    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at(place));
+    const Vec3 position = {0, 6, 0};
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at(position));
     world.add(light, kVolumes);
     // The wall of the volume at y = 1 stands at x = 2.586.
     for (int i = -3; i <= 3; ++i) {
         const Vec3 eye = {2.586f + 0.015f * static_cast<float>(i), 1, 0.2f};
         const RenderView view = from(eye, eye + Vec3(-0.3f, -0.4f, 1));
         const Visibility found = visibility(*this, light, view);
-        CHECK(disagreement(*this, found, Vec4(place, 1), view) < 0.001);
+        CHECK(disagreement(*this, found, Vec4(position, 1), view) < 0.001);
     }
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: nested volumes count up to 255; 256 of them are none"
+    VolumeScene, "shadow_volume: up to 255 nested volumes are counted; 256 alias to none"
                      * technique("shadow.stencil-pass")) {
     add_floor();
     const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0, 6, 0}));
@@ -399,8 +398,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     VolumeScene,
-    "shadow_volume: without casters, and with closed ones before or behind all, nothing is "
-    "shadowed") {
+    "shadow_volume: nothing is shadowed without casters, or with casters in front or behind") {
     add_floor();
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({1.5f, 4, 2}));
     const RenderView view = from({0.3f, 2.2f, 4.1f});
@@ -414,7 +412,7 @@ TEST_CASE_FIXTURE(
         world.add(light, ShadowVolume{.mode = mode});
         CHECK(radiance(view).pixels == open.pixels);
     }
-    // Above the camera and short: its volume ends before it meets anything that is seen.
+    // Above the camera and short: its volume ends before it hits any visible surface.
     add_caster(cube, affine_from({1, 3, 2}, {1, 0, 0, 0}, Vec3(0.2f)));
     world.add(
         light, ShadowVolume{
@@ -428,7 +426,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: a light inside a closed caster lights nothing outside of it") {
+    VolumeScene, "shadow_volume: a light inside a closed caster lights nothing outside it") {
     add_floor();
     add_caster(cube, at({0, 2, 0}));
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({0.1f, 2.2f, 0.1f}));
@@ -463,15 +461,15 @@ TEST_CASE_FIXTURE(
 
     // Prisms can cast it, from either side.
     world.add(light, ShadowVolume{.kind = VolumeKind::Mixed});
-    const Vec4 place = {0.2f, 4, 0.3f, 1};
+    const Vec4 position = {0.2f, 4, 0.3f, 1};
     Visibility found = visibility(*this, light, view);
     CHECK(found.shadowed > 100);
-    CHECK(disagreement(*this, found, place, view) < 0.001);
+    CHECK(disagreement(*this, found, position, view) < 0.001);
     world.get<WorldTransform>(caster).world =
         affine_from({0, 1, 0}, glm::angleAxis(0.5f * kPi, Vec3(1, 0, 0)), {1, 1, 1});
     found = visibility(*this, light, view);
     CHECK(found.shadowed > 100);
-    CHECK(disagreement(*this, found, place, view) < 0.001);
+    CHECK(disagreement(*this, found, position, view) < 0.001);
 }
 
 TEST_CASE_FIXTURE(
@@ -518,10 +516,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene,
-    "shadow_volume: by radius light leaks behind the cap, by plane and endless none does"
-        * technique("shadow.extrusion-distance")) {
-    // A long bar close to the light: the middle of the far cap is much nearer than its ends.
+    VolumeScene, "shadow_volume: extruded by radius, light leaks behind the cap, else it does not"
+                     * technique("shadow.extrusion-distance")) {
+    // A long bar close to the light: the center of the far cap is much nearer than its ends.
     MeshData floor = test::make_square();
     world.add(
         place(
@@ -529,16 +526,16 @@ TEST_CASE_FIXTURE(
             affine_from({0, 0, 0}, glm::angleAxis(-0.5f * kPi, Vec3(1, 0, 0)), {20, 20, 1})),
         NoShadow{});
     add_caster(cube, affine_from({0, 9, 0}, {1, 0, 0, 0}, {4, 0.1f, 1}));
-    const Vec3 place_of_light = {0, 10, 0};
+    const Vec3 light_position = {0, 10, 0};
     const Entity light = shine(
         PointLight{.intensity = 500, .radius = 14, .attenuation = {.falloff = Falloff::None}},
-        at(place_of_light));
+        at(light_position));
     world.add(light, kVolumes);
     const RenderView view = from({0.1f, 14, 0.2f}, {0, 0, 0});
     const auto wrong = [&](Extrusion extrusion, VolumeKind kind) {
         world.add(
             light, ShadowVolume{.kind = kind, .mode = StencilMode::ZFail, .extrusion = extrusion});
-        return disagreement(*this, visibility(*this, light, view), Vec4(place_of_light, 1), view);
+        return disagreement(*this, visibility(*this, light, view), Vec4(light_position, 1), view);
     };
     CHECK(wrong(Extrusion::Radius, VolumeKind::PerEdge) > 0.01);
     CHECK(wrong(Extrusion::Plane, VolumeKind::PerTriangle) < 0.001);
@@ -546,35 +543,35 @@ TEST_CASE_FIXTURE(
     CHECK(wrong(Extrusion::Plane, VolumeKind::PerEdge) < 0.001);  // endless: corners are shared
 }
 
-TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: moved casters and swapped assets are followed") {
+TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: moved casters and replaced assets take effect") {
     add_floor();
     const Entity caster = add_caster(cube, at({0, 1, 0}));
-    const Vec3 place_of_light = {0.4f, 5, 0.3f};
-    const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at(place_of_light));
+    const Vec3 light_position = {0.4f, 5, 0.3f};
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at(light_position));
     world.add(light, kVolumes);
     const RenderView view = from({0.3f, 3.2f, 4.1f});
     for (int i = 0; i < 3; ++i) {
         world.get<WorldTransform>(caster).world = at({0.5f * static_cast<float>(i), 1, 0});
         const Visibility found = visibility(*this, light, view);
-        CHECK(disagreement(*this, found, Vec4(place_of_light, 1), view) < 0.001);
+        CHECK(disagreement(*this, found, Vec4(light_position, 1), view) < 0.001);
     }
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: the image is that of volumes, which count at a few pixels alone"
+    VolumeScene, "hybrid: the image equals that of volumes, which are counted at few pixels"
                      * technique("shadow.hybrid-edge")) {
     add_floor();
     add_boxes();
     const RenderView view = from({0.3f, 3.2f, 4.1f});
-    const Vec3 place = {1.5f, 4, 2};
+    const Vec3 position = {1.5f, 4, 2};
     Entity light;
     SUBCASE("spot") {
         light = shine(
             SpotLight{.intensity = 50, .radius = 12, .outer_angle = radians(40.0f)},
-            look_at(place, {0, 0.5f, 0}));
+            look_at(position, {0, 0.5f, 0}));
     }
     SUBCASE("point light") {
-        light = shine(PointLight{.intensity = 50, .radius = 12}, at(place));
+        light = shine(PointLight{.intensity = 50, .radius = 12}, at(position));
     }
     SUBCASE("sun") {
         light = shine(DirectionalLight{}, look_at({5, 3, 4}, {0, 0, 0}));
@@ -592,7 +589,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: where light grazes round casters the image is that of volumes"
+    VolumeScene, "hybrid: where light grazes round casters the image equals that of volumes"
                      * technique("shadow.hybrid-edge")) {
     add_floor();
     add_caster(
@@ -650,8 +647,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    test::RenderTest,
-    "hybrid: seven bits wrap beneath the mark of an edge" * technique("shadow.hybrid-edge")) {
+    test::RenderTest, "hybrid: the seven bits of the count wrap below the edge bit"
+                          * technique("shadow.hybrid-edge")) {
     const gpu::Texture depth("depth", {.format = GL_DEPTH32F_STENCIL8, .width = 4, .height = 4});
     const gpu::Framebuffer target("target", {}, {&depth});
     const Result<const gpu::Program*> program =
@@ -681,7 +678,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "volume_layers: a ball's volume is two layers, prisms are many more"
+    VolumeScene, "volume_layers: a ball's volume has two layers, prisms have many more"
                      * technique("shadow.density-view")) {
     add_floor();
     add_caster(add(make_sphere({.radius = 0.5f, .segments = 24, .rings = 12})), at({0, 2, 0}));
@@ -713,7 +710,7 @@ TEST_CASE_FIXTURE(
     CHECK(sum(aov(view, "volume_layers")) == 0);
 }
 
-TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is seen") {
+TEST_CASE("volume_list: a caster is kept if its shadow contains the eye or is in view") {
     const Bounds box = {{-1, 4, -1}, {1, 5, 1}};
     const Vec4 light = {0, 10, 0, 1};
     CHECK(shadow_may_contain(box, light, {0, 0, 0}, 0.1f));
@@ -739,7 +736,7 @@ TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is
 }
 
 TEST_CASE(
-    "shadow selection: only auto is decided, by whether the light has a ShadowVolume"
+    "shadow selection: only auto is resolved, by whether the light has a ShadowVolume"
     * technique("shadow.selection")) {
     using enum ShadowMethod;
     CHECK(choose_shadow_method(Auto, false) == Map);
@@ -751,7 +748,7 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow selection: a light left to choose has a map, with ShadowVolume volumes"
+    VolumeScene, "shadow selection: auto uses a map, and volumes with a ShadowVolume component"
                      * technique("shadow.selection")) {
     add_floor();
     add_caster(cube, at({0, 1, 0}));

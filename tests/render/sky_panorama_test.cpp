@@ -137,7 +137,7 @@ Vec3 octahedral_direction(int x, int y, int size) {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: the background is the panorama's color, whatever its mapping"
+    PanoramaScene, "sky_panorama: the background is the panorama's color, with any mapping"
                        * technique("env.angular-map, env.panorama")) {
     const auto smooth = [](const glm::dvec3& d) {
         return glm::dvec3(1.5, 1, 2) + glm::dvec3(d.x * d.y, d.z, d.y);
@@ -153,7 +153,7 @@ TEST_CASE_FIXTURE(
             }
             CAPTURE(static_cast<int>(mapping));
             CAPTURE(d.y);
-            // The disc's rim is one direction, and every way to it another: coarse there.
+            // The disc's rim is a single direction, approached from every side: coarse there.
             const double slack = disc && d.y < -0.9f ? 0.1 : 0.02;
             CHECK(glm::distance(glm::dvec3(seen(d)), smooth(glm::dvec3(d))) < slack);
         }
@@ -162,7 +162,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     PanoramaScene,
-    "sky_panorama: it turns with its rotation and closes behind" * technique("env.panorama")) {
+    "sky_panorama: it follows its rotation and has no seam" * technique("env.panorama")) {
     const auto quarters = [](const glm::dvec3& d) {
         return glm::dvec3(d.x > 0 ? 1 : 0, d.z > 0 ? 1 : 0, d.y > 0 ? 1 : 0);
     };
@@ -171,7 +171,7 @@ TEST_CASE_FIXTURE(
     CHECK(glm::distance(seen({1, 1, 1}), {1, 1, 1}) < 1e-3f);
     CHECK(glm::distance(seen({-1, -1, 2}), {0, 1, 0}) < 1e-3f);
     CHECK(glm::distance(seen({-1, 1, -1}), {0, 0, 1}) < 1e-3f);
-    // A quarter turn counter-clockwise, seen from above, moves what lay at +x to -z.
+    // A quarter turn counter-clockwise, viewed from above, moves what lay at +x to -z.
     surround(image, {.intensity = 2, .rotation = radians(90.0f)});
     CHECK(glm::distance(seen({1, 1, 1}), {0, 2, 2}) < 1e-2f);
     CHECK(glm::distance(seen({1, 1, -1}), {2, 2, 2}) < 1e-2f);
@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(RenderTest, "sky_panorama: irradiance is the integral over the
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "sky_panorama: rough mirrors show the GGX mean, a sun included") {
+TEST_CASE_FIXTURE(RenderTest, "sky_panorama: rough mirrors show the GGX mean, including the sun") {
     const auto overcast = [](const glm::dvec3& d) {
         return glm::dvec3(1, 2, 3) + glm::dvec3(d.y * d.y * d.y, d.x * d.z, d.z);
     };
@@ -246,7 +246,7 @@ TEST_CASE_FIXTURE(RenderTest, "sky_panorama: rough mirrors show the GGX mean, a 
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: a white ball vanishes in an even one, whatever its roughness") {
+    PanoramaScene, "sky_panorama: a white ball vanishes in a uniform one, at any roughness") {
     surround(picture_of(
         [](const glm::dvec3&) { return glm::dvec3(1); }, PanoramaMapping::Equirectangular, 32, 16));
     const MeshId mesh = add(make_ball(64));
@@ -273,8 +273,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene,
-    "sky_panorama: another level's image in its place is noticed, a missing one is magenta") {
+    PanoramaScene, "sky_panorama: a replaced image is noticed, a missing one is magenta") {
     const auto red = [](const glm::dvec3&) { return glm::dvec3(1, 0, 0); };
     const auto green = [](const glm::dvec3&) { return glm::dvec3(0, 1, 0); };
     surround(picture_of(red, PanoramaMapping::Equirectangular, 32, 16));
@@ -289,7 +288,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: radiance beyond half floats is cut off, below 0 is 0") {
+    PanoramaScene, "sky_panorama: radiance is clamped to the range of half floats, and to 0") {
     surround(picture_of(
         [](const glm::dvec3& d) { return glm::dvec3(1e9, -5, d.y); },
         PanoramaMapping::Equirectangular, 32, 16));
@@ -300,7 +299,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene, "sky_panorama: NaN texels leave images finite, the sky elsewhere as it is") {
+    PanoramaScene,
+    "sky_panorama: NaN texels give finite images, the rest of the sky is unchanged") {
     ImageData image = picture_of(
         [](const glm::dvec3& d) { return glm::dvec3(0.5, 0.6, 0.7) + 0.2 * d; },
         PanoramaMapping::Equirectangular, 64, 32);

@@ -37,7 +37,7 @@ class Temporal : public Shutter {
         }
         return image;
     }
-    /// What the mean of as many images as the jitter has places shows.
+    /// The mean of as many images as the jitter has offsets.
     gpu::FloatImage mean() {
         return gpu::read_floats(
             *render_accumulated(shared_renderer(), world, front(), kTemporalSamples).radiance);
@@ -58,7 +58,8 @@ double psnr_of(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Temporal, "temporal: off, it adds no pass and changes no bit") {
+TEST_CASE_FIXTURE(
+    Temporal, "temporal: switched off, it adds no pass, and the image is bit-identical") {
     place_objects();
     const gpu::FloatImage plain = picture();
     smooth(false);
@@ -70,8 +71,8 @@ TEST_CASE_FIXTURE(Temporal, "temporal: off, it adds no pass and changes no bit")
 }
 
 TEST_CASE_FIXTURE(
-    Temporal,
-    "temporal: what stands becomes the mean of its jittered images" * technique("post.temporal")) {
+    Temporal, "temporal: a static scene converges to the mean of its jittered images"
+                  * technique("post.temporal")) {
     place_objects();
     const gpu::FloatImage want = mean();
     const gpu::FloatImage plain = picture();
@@ -81,7 +82,7 @@ TEST_CASE_FIXTURE(
     CHECK(psnr_of(found, want) > 40);
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: what stands does not shimmer") {
+TEST_CASE_FIXTURE(Temporal, "temporal: a static scene does not shimmer") {
     place_objects();
     smooth(true);
     gpu::FloatImage before = after(48);
@@ -94,7 +95,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what stands does not shimmer") {
 }
 
 TEST_CASE_FIXTURE(
-    Temporal, "temporal: what appears from behind something keeps nothing of it"
+    Temporal, "temporal: a disoccluded background keeps nothing of its occluder"
                   * technique("post.temporal")) {
     const Vec3 wall = {0.1f, 0.3f, 0.2f};
     bar(unlit(wall), -100, 200, 0, -1);
@@ -113,7 +114,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Temporal,
-    "temporal: what goes by and darkens leaves no light behind" * technique("post.temporal")) {
+    "temporal: a moving object that darkens leaves no ghost" * technique("post.temporal")) {
     // Faint stripes, so that a neighborhood has some variance.
     std::vector<Entity> stripes;
     std::vector<MaterialId> colors;
@@ -147,7 +148,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: an image that goes by stays where it is and smooth") {
+TEST_CASE_FIXTURE(Temporal, "temporal: a moving texture stays in place and smooth") {
     std::vector<Entity> bars;
     for (int i = 0; i < 12; ++i) {
         const auto begin = static_cast<float>(-30 + 11 * i);
@@ -174,7 +175,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: an image that goes by stays where it is a
     CHECK(psnr_of(found, want) > rough + 2);
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting begin anew") {
+TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting reset the history") {
     smooth(true);
     const Entity light = bar(unlit({1, 1, 1}), 0, 64, 0);
     world.insert_resource(FrameTime{.step = 0.1f, .time = 1});
@@ -197,7 +198,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting b
     CHECK(picture().at(32, 32, 0) == 0.0f);
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: an edit after a cut shows at once, and smooth in the end") {
+TEST_CASE_FIXTURE(Temporal, "temporal: an edit after a cut shows at once, and converges") {
     place_objects();
     smooth(true);
     const auto paint = [&](const Vec4& color) {
@@ -221,8 +222,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: an edit after a cut shows at once, and sm
     CHECK(psnr_of(found, mean()) > 40);
 }
 
-TEST_CASE_FIXTURE(
-    Temporal, "temporal: an image of one color keeps it, light that is none is black") {
+TEST_CASE_FIXTURE(Temporal, "temporal: an image of one color keeps it, NaN becomes black") {
     bar(unlit({0.25f, 0.5f, 0.75f}), -100, 200, 7);
     smooth(true);
     const gpu::FloatImage found = after(5);
@@ -236,7 +236,7 @@ TEST_CASE_FIXTURE(
     CHECK(healed.at(32, 32, 1) == test::near(0.5).epsilon(0.05));
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: motion vectors know nothing of the jitter") {
+TEST_CASE_FIXTURE(Temporal, "temporal: motion vectors exclude the jitter") {
     place_objects();
     smooth(true);
     for (int i = 0; i < 5; ++i) {

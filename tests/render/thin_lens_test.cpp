@@ -65,7 +65,9 @@ float cross(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-TEST_CASE("thin_lens: circles of the spec's lens" * technique("post.circle-of-confusion")) {
+TEST_CASE(
+    "thin_lens: circles of confusion of the specified lens"
+    * technique("post.circle-of-confusion")) {
     CHECK(circle_at(2) == 0);
     CHECK(circle_at(1) == test::near(6.410256e-4).epsilon(1e-6));
     CHECK(circle_at(4) == test::near(3.205128e-4).epsilon(1e-6));
@@ -86,7 +88,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "thin_lens: half the f-number doubles the circle, and it grows away from the focus"
+    "thin_lens: half the f-number doubles the circle, which grows away from the focus"
     * technique("post.circle-of-confusion")) {
     CHECK(circle_of_confusion(0.05, 1, 2, 5) == test::near(2 * circle_at(5)));
     double before = 0;
@@ -118,7 +120,7 @@ TEST_CASE("thin_lens: every focus in front of the camera is beyond the focal len
     }
 }
 
-TEST_CASE("thin_lens: pixels of the view are those of the film") {
+TEST_CASE("thin_lens: circles in pixels match those on the film") {
     const Camera camera{.fov_y = 0.6f};
     const Lens lens = {.f_number = 1.8f, .focus_distance = 0.7f, .sensor_height = 0.03f};
     const LensView view = *make_lens_view(lens, camera);
@@ -131,7 +133,7 @@ TEST_CASE("thin_lens: pixels of the view are those of the film") {
     }
 }
 
-TEST_CASE("thin_lens: what is none is refused in one line") {
+TEST_CASE("thin_lens: an invalid lens is refused in one line") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Camera camera;
     for (const float bad : {0.0f, -2.8f, nan}) {
@@ -156,7 +158,7 @@ TEST_CASE("thin_lens: what is none is refused in one line") {
     CHECK(odd.max_blur == 0);
 }
 
-TEST_CASE("thin_lens: a camera whose lens is none is a pinhole") {
+TEST_CASE("thin_lens: a camera with an invalid lens is a pinhole") {
     World world;
     const Entity camera = world.create(Camera{}, WorldTransform{}, Lens{});
     CHECK(make_render_view(world, camera).lens.aperture_radius > 0);
@@ -166,7 +168,7 @@ TEST_CASE("thin_lens: a camera whose lens is none is a pinhole") {
     CHECK(view.clip_from_world == make_render_view(Camera{}, {}, {}).clip_from_world);
 }
 
-TEST_CASE("thin_lens: through every point of the lens what is in focus is where it was") {
+TEST_CASE("thin_lens: through every point of the lens a point in focus has the same pixel") {
     for (const int blades : {0, 5}) {
         const RenderView view =
             lens_camera({.aperture_radius = 0.05f, .focus_distance = 4, .blades = blades});
@@ -195,7 +197,7 @@ TEST_CASE("thin_lens: the lens images a point as a disc as wide as its circle of
     }
 }
 
-TEST_CASE("thin_lens: a lens sample moves the eye, keeps the jitter and sees the same motion") {
+TEST_CASE("thin_lens: a lens sample moves the eye, and keeps the jitter and the motion") {
     const RenderView steady = lens_camera({.aperture_radius = 0.03f, .focus_distance = 2});
     const RenderView view = with_jitter(steady, {0.25f, -0.5f});
     const Vec2 p = {0.6f, -0.3f};
@@ -225,7 +227,7 @@ TEST_CASE("thin_lens: a lens sample moves the eye, keeps the jitter and sees the
         < 2e-3f);
 }
 
-TEST_CASE("thin_lens: a pinhole has one sample, the view itself") {
+TEST_CASE("thin_lens: a pinhole has a single sample, the view itself") {
     const RenderView view = lens_camera({});
     for (const Vec2& p : {Vec2(0), Vec2(1, 0), Vec2(-0.3f, 0.7f)}) {
         const RenderView sample = with_lens_sample(view, p);
@@ -238,7 +240,7 @@ TEST_CASE("thin_lens: a pinhole has one sample, the view itself") {
     }
 }
 
-TEST_CASE("thin_lens: the tangents of a view that a lens sample moved hold all of its image") {
+TEST_CASE("thin_lens: the tangents of a view shifted by a lens sample enclose its image") {
     const RenderView view = lens_camera({.aperture_radius = 0.05f, .focus_distance = 1});
     const RenderView sample = with_lens_sample(view, {0.8f, -0.5f});
     const Vec2 widest = widest_tangent(sample);
@@ -253,7 +255,7 @@ TEST_CASE("thin_lens: the tangents of a view that a lens sample moved hold all o
     CHECK(widest_tangent(with_jitter(view, {0.5f, -0.4f})) == view.tangent);
 }
 
-TEST_CASE("thin_lens: equal areas of the square are equal areas of the aperture") {
+TEST_CASE("thin_lens: equal areas of the square map to equal areas of the aperture") {
     for (const int blades : {0, 3, 6, 7}) {
         const LensView lens = {.blades = blades, .blade_rotation = 0.4f};
         const std::vector<Vec2> points = aperture_points(lens, 120);
@@ -271,20 +273,19 @@ TEST_CASE("thin_lens: equal areas of the square are equal areas of the aperture"
         const float expected = blades == 0 ? 0.5f : (2 + std::cos(2 * kPi / n)) / 6;
         CHECK(second == test::near(expected).epsilon(2e-3));
 
-        // A small disc anywhere holds as many points as its share of the area.
+        // A small disc anywhere contains points in proportion to its area.
         const float area = blades == 0 ? kPi : 0.5f * n * std::sin(2 * kPi / n);
-        for (const Vec2& middle : {Vec2(0, 0), Vec2(0.1f, 0.2f), Vec2(-0.25f, 0.1f)}) {
+        for (const Vec2& center : {Vec2(0, 0), Vec2(0.1f, 0.2f), Vec2(-0.25f, 0.1f)}) {
             const auto inside = std::count_if(points.begin(), points.end(), [&](const Vec2& p) {
-                return glm::distance(p, middle) < 0.2f;
+                return glm::distance(p, center) < 0.2f;
             });
-            const float share = kPi * square(0.2f) / area;
-            CHECK(static_cast<float>(inside) / count == test::near(share).epsilon(0.03));
+            const float fraction = kPi * square(0.2f) / area;
+            CHECK(static_cast<float>(inside) / count == test::near(fraction).epsilon(0.03));
         }
     }
 }
 
-TEST_CASE(
-    "thin_lens: a bladed aperture is a regular polygon whose first corner is where it is said") {
+TEST_CASE("thin_lens: a bladed aperture is a regular polygon with the specified first corner") {
     const LensView lens = {.blades = 5, .blade_rotation = 0.4f};
     CHECK(glm::distance(point_on_aperture(lens, {0, 1}), {std::cos(0.4f), std::sin(0.4f)}) < 1e-6f);
     for (const Vec2& p : aperture_points(lens, 40)) {

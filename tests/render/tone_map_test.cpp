@@ -55,7 +55,7 @@ const Vec3 kColors[] = {{0.02f, 0.05f, 0.01f}, {0.18f, 0.18f, 0.18f}, {0.5f, 0.2
 
 TEST_CASE_FIXTURE(
     ToneScene,
-    "tone map: linear is exposure, clamp and sRGB, right in the mean to a fifth of a code") {
+    "tone map: linear is exposure, clamp and sRGB, within a fifth of a code in the mean") {
     for (const float ev : {-2.0f, 0.0f, 1.0f}) {
         for (const Vec3& color : kColors) {
             const Vec3 got = shown(color, {.ev = ev, .curve = ToneCurve::Linear});
@@ -68,7 +68,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(ToneScene, "tone map: both curves have the values of their papers") {
+TEST_CASE_FIXTURE(ToneScene, "tone map: both curves have the published values") {
     for (const Vec3& color : kColors) {
         const Vec3 n = shown(color, {.curve = ToneCurve::Neutral});
         const Vec3 a = shown(color, {.curve = ToneCurve::Aces});
@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(ToneScene, "tone map: one stop up is twice the radiance") {
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "tone map: dither spreads a value over neighboring codes and repeats") {
+    ToneScene, "tone map: dither spreads a value over adjacent codes, deterministically") {
     const float between = 0.2146f;  // between two codes
     static_cast<void>(shown(Vec3(between), {.curve = ToneCurve::Linear}));
     const gpu::ByteImage first = bytes;
@@ -122,7 +122,7 @@ TEST_CASE_FIXTURE(
     CHECK(first.pixels == bytes.pixels);
 }
 
-TEST_CASE_FIXTURE(ToneScene, "tone map: broken and endless radiance ends in the codes") {
+TEST_CASE_FIXTURE(ToneScene, "tone map: NaN and infinite radiance become valid codes") {
     static_cast<void>(shown(Vec3(1e30f), {.ev = 24}));
     CHECK(bytes.at(3, 3, 0) == 255);
     static_cast<void>(shown(Vec3(1), {.ev = -24}));
@@ -138,7 +138,7 @@ double half_a_code() {
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: global curve, knee and gamma are the oracle's to half a code"
+    ToneScene, "hdr: global curve, knee and gamma match the oracle within half a code"
                    * technique("hdr.compress, hdr.gamma, hdr.tonemap-shader")) {
     for (const Vec3& color : kColors) {
         const double l = oracle::luminance(color);
@@ -177,8 +177,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: every curve shows black as black and more light never as less"
-                   * technique("hdr.compress")) {
+    ToneScene,
+    "hdr: every curve maps black to black and is monotonic" * technique("hdr.compress")) {
     for (const ToneCurve curve : {ToneCurve::Reinhard, ToneCurve::Local, ToneCurve::Knee}) {
         CHECK(shown(Vec3(0), {.curve = curve, .dither = false}) == Vec3(0));
         float last = -1;
@@ -193,7 +193,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: light above 1 survives in the image, and is added before it is mapped"
+    ToneScene, "hdr: radiance above 1 is preserved, and added before tone mapping"
                    * technique("hdr.pipeline")) {
     static_cast<void>(shown(Vec3(5), {}));
     CHECK(radiance(look({0, 0, 1}, {0, 0, 0})).at(9, 9, 0) == 5.0f);
@@ -222,7 +222,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: the tone map is the last pass, behind all that needs linear light"
+    ToneScene, "hdr: the tone map is the last pass, after all that need linear light"
                    * technique("hdr.pipeline")) {
     static_cast<void>(shown(Vec3(1), {.curve = ToneCurve::Local, .metering = Metering::Auto}));
     FrameGraph& graph = frame_graph(shared_renderer());
@@ -236,16 +236,17 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: defog takes a share of the mean off, in any curve" * technique("hdr.defog")) {
+    ToneScene,
+    "hdr: defog subtracts a fraction of the mean, with any curve" * technique("hdr.defog")) {
     // Uniform: c becomes (1 - f) c.
-    for (const float share : {0.0f, 0.01f, 0.25f}) {
-        const float got = shown_light(Vec3(0.8f), {.defog = share});
-        CHECK(std::abs(got - (1 - share) * 0.8f) <= 0.51f / 255);
+    for (const float defog : {0.0f, 0.01f, 0.25f}) {
+        const float got = shown_light(Vec3(0.8f), {.defog = defog});
+        CHECK(std::abs(got - (1 - defog) * 0.8f) <= 0.51f / 255);
         const Vec3 knee = shown(
             Vec3(0.8f),
-            {.curve = ToneCurve::Knee, .contrast = 0.1f, .defog = share, .dither = false});
+            {.curve = ToneCurve::Knee, .contrast = 0.1f, .defog = defog, .dither = false});
         const double want =
-            oracle::knee_map(0.8, share * 0.8, {.contrast = 0.1, .exponent = 1 / 2.2});
+            oracle::knee_map(0.8, defog * 0.8, {.contrast = 0.1, .exponent = 1 / 2.2});
         CHECK(std::abs(knee.x - 255 * want) <= half_a_code());
     }
     CHECK(shown_light(Vec3(0.8f), {.defog = 1}) == 0);
@@ -253,7 +254,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ToneScene,
-    "hdr: metering shows a scene alike in any unit of light" * technique("hdr.key-scale")) {
+    "hdr: a metered scene looks the same in any unit of light" * technique("hdr.key-scale")) {
     const Exposure metered = {.metering = Metering::Key};
     CHECK(
         shown_light(Vec3(7), {.metering = Metering::Key, .manual_ev = -12})
@@ -273,8 +274,9 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: the eye adapts with simulated time, at home in its first frame and after a cut"
-                   * technique("hdr.pipeline")) {
+    ToneScene,
+    "hdr: the eye adapts over simulated time, and at once in a first frame or after a cut"
+        * technique("hdr.pipeline")) {
     const Exposure eye = {.metering = Metering::Auto, .adaptation = 0.5f};
     CHECK(std::abs(shown_light(Vec3(4), eye) - 0.18f) <= 0.51f / 255);
     // The light falls to an eighth; the eye, used to 4, sees it dark, then gets used to it.
@@ -298,7 +300,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ToneScene,
-    "hdr: an accumulated image is metered once, as what is shown" * technique("hdr.pipeline")) {
+    "hdr: an accumulated image is metered once, as displayed" * technique("hdr.pipeline")) {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(2)});
     world.insert_resource(Exposure{
         .curve = ToneCurve::Linear,

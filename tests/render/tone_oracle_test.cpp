@@ -32,7 +32,7 @@ std::vector<double> times(std::vector<double> values, double factor) {
 }  // namespace
 
 TEST_CASE(
-    "hdr: luminance weighs red 0.27, green 0.67 and blue 0.06, which is white 1"
+    "hdr: luminance weights are red 0.27, green 0.67 and blue 0.06, with sum 1"
     * technique("hdr.luminance")) {
     CHECK(luminance({1, 1, 1}) == test::near(1).epsilon(1e-15));
     CHECK(luminance({1, 0, 0}) == 0.27);
@@ -43,7 +43,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: the log-average is that of the formula, and below the mean"
+    "hdr: the log-average matches the formula, and is below the mean"
     * technique("hdr.log-average")) {
     CHECK(log_average(std::vector<double>(10, 0.5), 1e-4) == test::near(0.5 + 1e-4).epsilon(1e-12));
     CHECK(log_average(std::vector<double>{1, 100}, 0) == test::near(10).epsilon(1e-12));
@@ -58,7 +58,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: the dynamic range is a ratio, without unit and 1 in the dark"
+    "hdr: the dynamic range is a ratio without unit, and 1 for a black image"
     * technique("hdr.dynamic-range")) {
     const std::vector<double> two = {0.01, 1000};
     CHECK(dynamic_range(two) == test::near(1e5).epsilon(1e-12));
@@ -91,7 +91,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: compression has its printed values, rises and stays below 1"
+    "hdr: compression has its printed values, is monotonic and stays below 1"
     * technique("hdr.compress")) {
     const double known[][2] = {{0, 0},   {0.18, 0.152542}, {1, 0.5},          {3, 0.75},
                                {9, 0.9}, {99, 0.99},       {0.018, 0.017682}, {1.8, 0.642857}};
@@ -112,7 +112,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: gamma and the monitor undo each other and bend what lies between 0 and 1"
+    "hdr: gamma encoding and decoding are inverse, and curved between 0 and 1"
     * technique("hdr.gamma")) {
     for (const double gamma : {2.2, 2.8}) {
         for (double x = 0; x <= 1; x += 0.125) {
@@ -129,7 +129,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: the knee has its printed values, rises with light and falls with contrast"
+    "hdr: the knee has its printed values, increases with light, decreases with contrast"
     * technique("hdr.tonemap-shader")) {
     const double known[][4] = {
         {0, 0, 0, 0},
@@ -159,7 +159,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hdr: defog takes a share of the mean color off, and never more than there is"
+    "hdr: defog subtracts a fraction of the mean color, and never below 0"
     * technique("hdr.defog")) {
     CHECK(knee_map(0.5, 0, {}) == test::near(0.243230).epsilon(5e-5));
     CHECK(knee_map(0.5, 0.01 * 0.3, {}) == test::near(0.242566));
@@ -167,7 +167,7 @@ TEST_CASE(
     CHECK(knee_map(0.7, 0.01 * 0.7, {}) == test::near(knee_map(0.99 * 0.7, 0, {})).epsilon(1e-12));
 }
 
-TEST_CASE("hdr: the eye goes the same way however the time is cut into frames") {
+TEST_CASE("hdr: eye adaptation does not depend on the frame rate") {
     CHECK(adaptation_blend(0.5f, 0.5f) == test::near(1 - std::exp(-1.0)));
     CHECK(adaptation_blend(0.5f, 0) == 0);
     CHECK(adaptation_blend(0, 0.01f) == 1);

@@ -34,10 +34,10 @@ class Pool : public Scene {
                 .scattering = Vec3(0.1f)},
             WorldTransform{at({0, 0, 0})}, Caustics{.resolution = 256, .spacing = 1});
     }
-    Entity lay(const Vec3& middle, float half, float turn) {
+    Entity lay(const Vec3& center, float half, float turn) {
         return place(
             add(make_square()), white_,
-            affine_from(middle, glm::angleAxis(radians(turn), Vec3(1, 0, 0)), Vec3(half)));
+            affine_from(center, glm::angleAxis(radians(turn), Vec3(1, 0, 0)), Vec3(half)));
     }
     void wave() {
         WaveTable table;
@@ -79,11 +79,11 @@ double mean(const gpu::FloatImage& image) {
 }
 
 double deviation(const gpu::FloatImage& image) {
-    const double middle = mean(image);
+    const double center = mean(image);
     double sum = 0;
     for (int y = 0; y < kSize; ++y) {
         for (int x = 0; x < kSize; ++x) {
-            sum += std::pow(static_cast<double>(image.at(x, y, 1)) / middle - 1, 2);
+            sum += std::pow(static_cast<double>(image.at(x, y, 1)) / center - 1, 2);
         }
     }
     return std::sqrt(sum / (kSize * kSize));
@@ -91,7 +91,7 @@ double deviation(const gpu::FloatImage& image) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Pool, "water shafts: flat water has none, and without steps all is as before") {
+TEST_CASE_FIXTURE(Pool, "water shafts: flat water has none, and 0 steps change nothing") {
     sun(glm::normalize(Vec3(0.3f, 1, 0.2f)));
     const gpu::FloatImage even = radiance(level());
     caustics().shaft_steps = 8;
@@ -104,7 +104,7 @@ TEST_CASE_FIXTURE(Pool, "water shafts: flat water has none, and without steps al
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "water shafts: light of the veil comes and goes with the waves, its mean stays"
+    Pool, "water shafts: in-scattered light varies with the waves, with a constant mean"
               * technique("caustic.projected-vertices")) {
     sun(glm::normalize(Vec3(0.1f, 1, -1.5f)));
     wave();
@@ -128,7 +128,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "water shafts: what stands in the water throws a dark one"
+    Pool, "water shafts: an object in the water casts a dark shaft"
               * technique("caustic.projected-vertices")) {
     sun({0, 1, 0});
     caustics().shaft_steps = 16;
@@ -143,7 +143,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Pool, "under water: lamps lose light on their way, and where they go in"
+    Pool, "under water: light of lamps is absorbed along its path, and reflected at the surface"
               * technique("caustic.projected-vertices")) {
     const float extinction = 0.15f;
     const Vec3 eye(0, -kDepth + 0.5f, 0);
@@ -164,9 +164,9 @@ TEST_CASE_FIXTURE(
         const float bare = floor_below();
         world.get<WorldTransform>(water_).world = at({0, 0, 0});
         const float let_in = height > 0 ? 1 - fresnel(1, index) : 1;
-        const float way = height > 0 ? kDepth : kDepth + height;
+        const float path = height > 0 ? kDepth : kDepth + height;
         CHECK(
-            wet / (bare * let_in * std::exp(-extinction * way) * veil)
+            wet / (bare * let_in * std::exp(-extinction * path) * veil)
             == test::near(1).epsilon(0.002));
         world.destroy(lamp);
     }

@@ -24,7 +24,7 @@ struct VignetteScene : Scene {
 }  // namespace
 
 TEST_CASE_FIXTURE(
-    VignetteScene, "vignette: the image of an even sky is the cos^4 law and the overlap") {
+    VignetteScene, "vignette: a uniform sky shows the cos^4 law and the pupil overlap") {
     const Vignette settings = {.natural = 0.7f, .mechanical = 0.6f};
     const gpu::FloatImage plain = radiance(view);
     const gpu::FloatImage dark = with(settings);
@@ -38,7 +38,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE(
-    "vignette: closed forms on the axis, in the corners and at the limits"
+    "vignette: it has the closed-form values on the axis, in the corners and at the limits"
     * technique("post.effect-pipeline")) {
     const Vec2 tangent = {2, 1};  // corners at tan = sqrt(5)
     CHECK(vignette({1, 1}, {0, 0}, tangent) == test::near(1));
@@ -48,13 +48,14 @@ TEST_CASE(
     CHECK(vignette({0, 0.5f}, {1, -1}, tangent) == test::near(0.3910).epsilon(1e-4));
     float last = 1;
     for (float x = 0; x <= 1; x += 0.125f) {
-        const float share = vignette({0.5f, 0.5f}, {x, x}, tangent);
-        CHECK(share <= last);
-        last = share;
+        const float fraction = vignette({0.5f, 0.5f}, {x, x}, tangent);
+        CHECK(fraction <= last);
+        last = fraction;
     }
 }
 
-TEST_CASE_FIXTURE(VignetteScene, "vignette: none, or nonsense, draws no pass and no NaN") {
+TEST_CASE_FIXTURE(
+    VignetteScene, "vignette: without it, or with invalid values, there is no pass and no NaN") {
     (void)with({});
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("vignette"));
     const gpu::FloatImage image = with({.natural = NAN, .mechanical = 1e9f});

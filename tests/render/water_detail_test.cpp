@@ -44,7 +44,7 @@ Vec2 bumps(int x, int y) {
         0.2f * std::cos(turn * static_cast<float>(x - 3 * y))};
 }
 
-/// Dark water under an even sky of 1: a pixel is the share it mirrors.
+/// Dark water under a uniform sky of 1: a pixel is the reflectance.
 class Tile : public Scene {
   public:
     Tile() {
@@ -96,7 +96,7 @@ WaveLine line_of(float length, float amplitude = 0.01f) {
 }  // namespace
 
 TEST_CASE(
-    "water detail: four waves move vertices, sixteen more are drawn, the others are neither"
+    "water detail: four waves displace vertices, sixteen more are in the texture, no others"
     * technique("water.geometric-texture-split")) {
     std::vector<WaveLine> lines;
     for (int i = 0; i < 30; ++i) {
@@ -110,7 +110,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water detail: only waves of two cells and more move vertices, whatever the split says"
+    "water detail: only waves of two cells or longer displace vertices, at any split"
     * technique("water.geometric-texture-split")) {
     const std::vector<WaveLine> lines = {line_of(9), line_of(3), line_of(1), line_of(0.5f)};
     CHECK(split_waves(lines, {.split = 0.1f}, 0.1f).geometric == 4);
@@ -123,7 +123,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water detail: the waves of a texture fit into its tile, as fast as before"
+    "water detail: waves in the texture fit into its tile and keep their frequency"
     * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 3, .tile = 5};
     const WaveTable before = some_waves();
@@ -144,7 +144,7 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: wherever waves are split, slopes are the same to 1e-4"
+    Tile, "water detail: at any split, slopes are the same within 1e-4"
               * technique("water.geometric-texture-split")) {
     for (const float split : {0.5f, 2.0f, 4.0f, 100.0f}) {
         CAPTURE(split);
@@ -177,7 +177,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: what a smaller level loses of slopes it keeps as their variance"
+    Tile, "water detail: a smaller mip level stores lost slopes as variance"
               * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 100, .tile = 12};
     WaveTable table = some_waves();
@@ -196,7 +196,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: waves that are drawn look like waves that move vertices"
+    Tile, "water detail: waves in the texture look like waves that displace vertices"
               * technique("water.geometric-texture-split")) {
     const WaterDetail detail = {.split = 100, .tile = 12};
     WaveTable table = some_waves();
@@ -221,7 +221,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: flat layers, or layers of no strength, leave the water as it is"
+    Tile, "water detail: flat layers, or layers of strength 0, do not change the water"
               * technique("water.scrolling-normal-map")) {
     const gpu::FloatImage plain = radiance(view);
     const ImageId map = add(normal_map(bumps));
@@ -235,7 +235,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: a layer moves as its map would, and is back after a copy"
+    Tile, "water detail: a layer scrolls like its map, and repeats after a tile"
               * technique("water.scrolling-normal-map")) {
     const ImageId map = add(normal_map(bumps));
     const WaterDetail moving = {
@@ -254,7 +254,7 @@ TEST_CASE_FIXTURE(
     still.normal_map = shifted;
     still.layers[0].speed = 0;
     const gpu::FloatImage as_moved = with(still);
-    for (int y = 40; y < 64; ++y) {  // where its texels are seen, no smaller level
+    for (int y = 40; y < 64; ++y) {  // where its texels are visible, no smaller level
         for (int x = 0; x < 64; ++x) {
             CHECK(std::abs(as_moved.at(x, y, 0) - moved.at(x, y, 0)) < 1e-3f);
         }
@@ -262,7 +262,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: layers add up as their normals, by strength"
+    Tile, "water detail: layers add up by their normals and strengths"
               * technique("water.scrolling-normal-map")) {
     // Maps of one slope: the water is tilted as a whole.
     const auto tilted = [](int, int) { return Vec2(0.1f, -0.15f); };
@@ -286,7 +286,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Tile, "water detail: who asks for none has no pass, and its map is not missed"
+    Tile, "water detail: without it there is no pass, and no map is required"
               * technique("water.scrolling-normal-map")) {
     with({});
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("texture waves"));

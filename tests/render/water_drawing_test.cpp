@@ -38,8 +38,8 @@ class Lake : public Scene {
         world.insert_resource(FrameTime{.step = kStep, .time = kNow});
         world.insert_resource(Exposure{});
     }
-    Entity pour(const Water& water, const Affine& place = at({0, 0, 0})) {
-        return world.create(water, WorldTransform{place});
+    Entity pour(const Water& water, const Affine& pose = at({0, 0, 0})) {
+        return world.create(water, WorldTransform{pose});
     }
     void surround(const Vec3& color) {
         world.insert_resource(Environment{
@@ -56,8 +56,8 @@ class Lake : public Scene {
     /// One meter along the axis of the view.
     static Vec3 ray_through(const RenderView& view, int x, int y) {
         const Vec2 size(view.width, view.height);
-        const Vec2 share = (Vec2(x, y) + 0.5f) / size;
-        const Vec2 ndc = {2 * share.x - 1, 1 - 2 * share.y};
+        const Vec2 uv = (Vec2(x, y) + 0.5f) / size;
+        const Vec2 ndc = {2 * uv.x - 1, 1 - 2 * uv.y};
         const Affine& pose = view.world_from_camera;
         const auto column = [&](int c) {
             return Vec3(pose.row[0][c], pose.row[1][c], pose.row[2][c]);
@@ -101,9 +101,9 @@ RippleState make_rough(const Water& water, float cell) {
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
             const Vec2 p(x, z);
-            const std::size_t place = state.at(x, z);
-            state.height[place] = 0.1f * std::sin(0.7f * p.x) * std::cos(0.4f * p.y);
-            state.previous[place] = state.height[place] - 0.01f * std::cos(0.5f * p.x + 0.3f * p.y);
+            const std::size_t pose = state.at(x, z);
+            state.height[pose] = 0.1f * std::sin(0.7f * p.x) * std::cos(0.4f * p.y);
+            state.previous[pose] = state.height[pose] - 0.01f * std::cos(0.5f * p.x + 0.3f * p.y);
         }
     }
     return state;
@@ -111,7 +111,7 @@ RippleState make_rough(const Water& water, float cell) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to the edge of each") {
+TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels match the query, up to the edge of each field") {
     const RippleState states[] = {
         make_rough({.size = {3, 2}}, 0.1f), make_rough({.size = {1, 4}}, 0.1f),
         make_rough({.size = {2, 2}}, 0.25f), make_rough({.size = {5, 1}}, 0.1f)};
@@ -121,11 +121,11 @@ TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to th
     RippleAtlas atlas;
     atlas.update(all, 4096);
     const gpu::FloatImage image = gpu::read_floats(atlas.texture());
-    REQUIRE(atlas.places().size() == 6);
+    REQUIRE(atlas.tiles().size() == 6);
     for (std::size_t i = 0; i < 6; ++i) {
-        const AtlasPlace& place = atlas.places()[i];
-        CHECK(place.fits == (all[i] != nullptr && all[i] != &none));
-        if (!place.fits) {
+        const RippleTile& tile = atlas.tiles()[i];
+        CHECK(tile.fits == (all[i] != nullptr && all[i] != &none));
+        if (!tile.fits) {
             continue;
         }
         const RippleState& state = *all[i];
@@ -133,10 +133,10 @@ TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to th
             for (int x = -1; x <= state.cells.x; ++x) {
                 // The texel around it repeats the outermost.
                 const IVec2 cell = glm::clamp(IVec2(x, z), IVec2(0), state.cells - 1);
-                const Vec2 middle = state.cell * (Vec2(cell) + 0.5f - 0.5f * Vec2(state.cells));
-                const RipplePoint point = sample_ripples(state, middle);
-                const int row = image.height - 1 - (place.corner.y + z);
-                const auto texel = [&](int c) { return image.at(place.corner.x + x, row, c); };
+                const Vec2 center = state.cell * (Vec2(cell) + 0.5f - 0.5f * Vec2(state.cells));
+                const RipplePoint point = sample_ripples(state, center);
+                const int row = image.height - 1 - (tile.corner.y + z);
+                const auto texel = [&](int c) { return image.at(tile.corner.x + x, row, c); };
                 CHECK(std::abs(texel(0) - point.height) < 1e-6f);
                 CHECK(std::abs(texel(1) - point.velocity) < 1e-4f);
                 CHECK(std::abs(texel(2) - point.slope.x) < 1e-5f);
@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to th
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: between steps its waves are where they were then") {
+TEST_CASE_FIXTURE(Lake, "water: between steps its waves are interpolated in time") {
     const Water water = {.size = {40, 40}, .absorption = Vec3(1)};
     const Entity lake = pour(water);
     world.add(lake, table_at(water, 0));
@@ -233,7 +233,7 @@ TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the pre
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the query has") {
+TEST_CASE_FIXTURE(Lake, "water: leaning waves reflect by the slopes of the query") {
     // Black water under an even sky: what is mirrored is what the Fresnel equations say.
     surround({1, 1, 1});
     const Water water = {.absorption = Vec3(1000), .scattering = Vec3(0)};
@@ -249,7 +249,7 @@ TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the quer
     surface.waves = &table;
     const RenderView view = look({0, 2.5f, 2}, {0, 0, 0}, 96, 64);
     const gpu::FloatImage depth = aov(view, "depth");
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     double squares = 0;
     int count = 0;
     for (int y = 20; y < 64; y += 3) {
@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the quer
             const float cosine = glm::dot(point.normal, to_camera);
             if (cosine > 0.3f) {
                 const double expected = static_cast<double>(fresnel(cosine, 1.333f));
-                const double off = static_cast<double>(seen.at(x, y, 1)) / expected - 1;
+                const double off = static_cast<double>(image.at(x, y, 1)) / expected - 1;
                 squares += off * off;
                 ++count;
             }
@@ -270,7 +270,7 @@ TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the quer
     CHECK(std::sqrt(squares / count) < 0.05);  // slopes are those of the vertices around
 }
 
-TEST_CASE_FIXTURE(Lake, "water: where patches of two sizes meet there is no crack to see through") {
+TEST_CASE_FIXTURE(Lake, "water: between patches of two sizes there is no crack") {
     surround({0, 0, 0});
     place(
         add(make_square()),
@@ -291,34 +291,33 @@ TEST_CASE_FIXTURE(Lake, "water: where patches of two sizes meet there is no crac
     world.add(lake, table);
     // The last one looks over patches that no wave moves.
     for (const Vec3& eye : {Vec3(0, 2.5f, 0), Vec3(13, 6, 5), Vec3(-250, 150, -100)}) {
-        const gpu::FloatImage seen = radiance(look(eye, eye + Vec3(1, -0.5f, 0.4f), 320, 200));
+        const gpu::FloatImage image = radiance(look(eye, eye + Vec3(1, -0.5f, 0.4f), 320, 200));
         int bright = 0;
         for (int y = 0; y < 200; ++y) {
             for (int x = 0; x < 320; ++x) {
-                bright += seen.at(x, y, 0) > 0.02f ? 1 : 0;
+                bright += image.at(x, y, 0) > 0.02f ? 1 : 0;
             }
         }
         CHECK(bright == 0);
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: deep water gives back a third of its backscatter over extinction") {
+TEST_CASE_FIXTURE(Lake, "water: deep water reflects a third of its backscatter over extinction") {
     surround({1, 1, 1});
     const float cosine_one = fresnel(1.0f, 1.333f);
     for (const Vec3 scattering : {Vec3(0.2f, 0.1f, 0), Vec3(2, 1, 0)}) {
         const Entity lake = pour({.absorption = Vec3(3), .scattering = scattering});
-        const gpu::FloatImage seen = radiance(look({0, 2, 0}, {0, 0, -0.01f}, 33, 33));
+        const gpu::FloatImage image = radiance(look({0, 2, 0}, {0, 0, -0.01f}, 33, 33));
         for (int c = 0; c < 3; ++c) {
             const float glow = 0.33f * 0.54f * scattering[c] / (3 + scattering[c]);
             const float expected = cosine_one + (1 - cosine_one) * glow;
-            CHECK(seen.at(16, 16, c) == test::near(expected).epsilon(0.03).scale(0));
+            CHECK(image.at(16, 16, c) == test::near(expected).epsilon(0.03).scale(0));
         }
         world.destroy(lake);
     }
 }
 
-TEST_CASE_FIXTURE(
-    Lake, "water: the sun glints where it is mirrored; one below the horizon is none") {
+TEST_CASE_FIXTURE(Lake, "water: the sun glints at its reflection; below the horizon it does not") {
     pour({.absorption = Vec3(1), .scattering = Vec3(0)});
     const RenderView view = look({0, 2, 0}, {0, 0, -2}, 65, 65);
     const gpu::FloatImage dark = radiance(view);
@@ -343,7 +342,7 @@ TEST_CASE_FIXTURE(
     CHECK(largest_difference(sun_toward({0.2f, -0.001f, -1}), dark) == 0);
 }
 
-TEST_CASE_FIXTURE(Lake, "caustics: of a sun at the horizon or below it there are none") {
+TEST_CASE_FIXTURE(Lake, "caustics: a sun at or below the horizon causes none") {
     surround({0.1f, 0.1f, 0.1f});
     place(
         add(make_square()), add(Material{.shading = ShadingModel::Blinn}),
@@ -366,35 +365,35 @@ TEST_CASE_FIXTURE(Lake, "caustics: of a sun at the horizon or below it there are
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water veil: aside of the middle the way through the water is longer") {
+TEST_CASE_FIXTURE(Lake, "water veil: off the image center the path through the water is longer") {
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         affine_from({0, -9, -3}, {1, 0, 0, 0}, Vec3(6)));
     pour({.absorption = Vec3(0.3f), .scattering = Vec3(0)});
     const RenderView view = look({0, -9, 0}, {0, -9, -1}, 65, 65);
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     for (const IVec2 pixel : {IVec2(32, 32), IVec2(2, 32), IVec2(60, 60), IVec2(10, 40)}) {
-        const float way = 3 * glm::length(ray_through(view, pixel.x, pixel.y));
+        const float path = 3 * glm::length(ray_through(view, pixel.x, pixel.y));
         CHECK(
-            seen.at(pixel.x, pixel.y, 0)
-            == test::near(std::exp(-0.3f * way)).epsilon(0.01).scale(0));
+            image.at(pixel.x, pixel.y, 0)
+            == test::near(std::exp(-0.3f * path)).epsilon(0.01).scale(0));
     }
 }
 
-TEST_CASE_FIXTURE(
-    Lake, "water veil: where water ends at its side, what is beyond is seen through the air") {
+TEST_CASE_FIXTURE(Lake, "water veil: beyond the side of the water nothing is absorbed") {
     surround({1, 1, 1});
     pour({.size = {4, 6}, .absorption = {0.3f, 0.3f, 0.3f}, .scattering = Vec3(0)});
     for (const Vec3 toward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
         const Vec3 eye = {0.5f, -5, -1};
-        const gpu::FloatImage seen = radiance(look(eye, eye + toward, 33, 33));
-        const float way = toward.x != 0 ? 2 - toward.x * eye.x : 3 - toward.z * eye.z;
-        CHECK(seen.at(16, 16, 0) == test::near(std::exp(-0.3f * way)).epsilon(0.002).scale(0));
+        const gpu::FloatImage image = radiance(look(eye, eye + toward, 33, 33));
+        const float path = toward.x != 0 ? 2 - toward.x * eye.x : 3 - toward.z * eye.z;
+        CHECK(image.at(16, 16, 0) == test::near(std::exp(-0.3f * path)).epsilon(0.002).scale(0));
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, whatever moves it") {
+TEST_CASE_FIXTURE(
+    Lake, "water: a camera exactly on the surface gives a finite image, with any waves") {
     surround({0.5f, 0.7f, 1});
     shine(DirectionalLight{.illuminance = 2}, look_at({1, 0.0f, 0}, Vec3(0)));
     const Water water = {.depth = 2};
@@ -413,8 +412,8 @@ TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, wh
         for (const Vec3 toward :
              {Vec3(1, 0, 0), Vec3(0, 1, 0.1f), Vec3(0, -1, 0.1f), Vec3(1, 1, 1)}) {
             const Vec3 eye = {0, height, 0};
-            const gpu::FloatImage seen = radiance(look(eye, eye + toward, 33, 33));
-            for (const float value : seen.pixels) {
+            const gpu::FloatImage image = radiance(look(eye, eye + toward, 33, 33));
+            for (const float value : image.pixels) {
                 REQUIRE(std::isfinite(value));
                 REQUIRE(value >= 0);
             }
@@ -422,7 +421,7 @@ TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, wh
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface in them and above them") {
+TEST_CASE_FIXTURE(Lake, "water: tiles hold the highest surface in them and in those above") {
     pour({.size = {40, 40}});
     const MaterialId white = add(Material{});
     place(add(make_square()), white, affine_from({-3, 1, -4}, {1, 0, 0, 0}, {1, 2.5f, 1}));
@@ -435,7 +434,7 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface in them and above
     }
     draw(view);
     const gpu::FloatImage tiles = gpu::read_floats(*graph.texture(graph.find(names[0])));
-    const gpu::FloatImage seen = gpu::read_floats(*graph.texture(graph.find(names[1])));
+    const gpu::FloatImage image = gpu::read_floats(*graph.texture(graph.find(names[1])));
     for (const std::string& name : names) {
         graph.forget_named(name);
     }
@@ -444,7 +443,7 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface in them and above
     std::vector<float> highest(15, -layout::kNoHeight);
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
-            const float depth = seen.at(x, y, 0);
+            const float depth = image.at(x, y, 0);
             const float d = depth > 0 ? view.near / depth : 0;
             const int row = 2 - (view.height - 1 - y) / layout::kHighestTile;  // from the top
             float& highest_here =
@@ -466,7 +465,7 @@ TEST_CASE_FIXTURE(Lake, "water: tiles know the highest surface in them and above
     CHECK(tiles.at(1, 2, 1) > tiles.at(1, 2, 0) + 0.5f);  // the column of the wall
 }
 
-TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with a sea in the world as without") {
+TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with and without a sea in the world") {
     surround({0.5f, 0.7f, 1});
     shine(DirectionalLight{.illuminance = 2}, look_at({1, 1, 0}, Vec3(0)));
     const Entity pool = pour({.size = {8, 8}, .depth = 2});
@@ -489,7 +488,7 @@ TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with a sea in the world as
     CHECK(same == 64 * 36);
 }
 
-TEST_CASE("foam pattern: every value is as frequent as any other, and there is no seam") {
+TEST_CASE("foam pattern: its values are uniformly distributed, and it has no seam") {
     const std::vector<std::vector<std::uint8_t>> levels = make_foam_pattern();
     REQUIRE(levels.size() == 9);
     const std::vector<std::uint8_t>& pattern = levels[0];
@@ -520,7 +519,7 @@ TEST_CASE("foam pattern: every value is as frequent as any other, and there is n
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: foam that covers a share of the sea whitens as much of it") {
+TEST_CASE_FIXTURE(Lake, "water: foam that covers a fraction of the sea whitens that fraction") {
     surround({1, 1, 1});
     const Ocean calm = {.wind_speed = 0, .cascades = 1, .resolution = 32};
     OceanState state;
@@ -532,10 +531,10 @@ TEST_CASE_FIXTURE(Lake, "water: foam that covers a share of the sea whitens as m
         const RenderView view = look({0, height, 0.1f}, {0, 0, 0}, 96, 96);
         const auto mean_with = [&](float cover) {
             world.get<OceanFoam>(sea).coverage.assign(32 * 32, cover);
-            const gpu::FloatImage seen = radiance(view);
+            const gpu::FloatImage image = radiance(view);
             double sum = 0;
-            for (std::size_t i = 0; i < seen.pixels.size(); i += 4) {
-                sum += seen.pixels[i];
+            for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+                sum += image.pixels[i];
             }
             return sum / (96 * 96);
         };
@@ -545,14 +544,14 @@ TEST_CASE_FIXTURE(Lake, "water: foam that covers a share of the sea whitens as m
             CAPTURE(cover);
             const double white = cover * (0.4 + 0.6 * cover);
             const double expected = bare + white * (0.7 - bare);
-            const double share = (mean_with(cover) - bare) / (expected - bare);
-            CHECK(share < 1.1);
-            CHECK(share > (cover > 0.1f ? 0.85 : 0.2));  // thin foam drowns in the filter
+            const double uv = (mean_with(cover) - bare) / (expected - bare);
+            CHECK(uv < 1.1);
+            CHECK(uv > (cover > 0.1f ? 0.85 : 0.2));  // thin foam drowns in the filter
         }
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: a hundred rippling pools are as many calls as one") {
+TEST_CASE_FIXTURE(Lake, "water: a hundred rippling pools take as many calls as one") {
     surround({1, 1, 1});
     const RenderView view = look({0, 6, 12}, {0, 0, 0});
     const auto calls = [&] {

@@ -39,11 +39,11 @@ class Look : public Scene {
     Entity pour(const Water& water, float y = kLevel) {
         return world.create(water, WorldTransform{at({0, y, 0})});
     }
-    Entity ball(const Vec3& middle, float radius, const Vec3& color) {
+    Entity ball(const Vec3& center, float radius, const Vec3& color) {
         return place(
             add(make_ball(24)),
             add(Material{.shading = ShadingModel::Unlit, .base_color = Vec4(color, 1)}),
-            affine_from(middle, {1, 0, 0, 0}, Vec3(radius)));
+            affine_from(center, {1, 0, 0, 0}, Vec3(radius)));
     }
     void things_above() {
         ball({-1, 1.5f, -4}, 0.8f, {0.9f, 0.1f, 0.1f});
@@ -54,7 +54,7 @@ class Look : public Scene {
     static constexpr float kLevel = 0.3f;
 };
 
-/// Unit, from the eye through the middle of a pixel; row 0 is the top one.
+/// Unit, from the eye through the center of a pixel; row 0 is the top one.
 Vec3 ray_through(const RenderView& view, int x, int y) {
     const Vec2 size(view.width, view.height);
     const Vec2 ndc =
@@ -77,7 +77,7 @@ Vec3 point_at(const RenderView& view, const gpu::FloatImage& depth, int x, int y
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Look, "water look: one that asks for nothing is no look, to the bit") {
+TEST_CASE_FIXTURE(Look, "water look: a default look is bit-identical to none") {
     things_above();
     const Entity pond = pour(kMirror);
     const RenderView view = look({0, 1.5f, 2}, {0, 0.8f, -3});
@@ -89,7 +89,7 @@ TEST_CASE_FIXTURE(Look, "water look: one that asks for nothing is no look, to th
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water look: from above it mirrors by the form that is chosen"
+    Look, "water look: from above it reflects by the chosen Fresnel term"
               * technique("water.fresnel-approx")) {
     world.resource<Environment>() = {
         .sky = SkyKind::Uniform, .zenith = Vec3(1), .horizon = Vec3(1), .ground = Vec3(1)};
@@ -97,7 +97,7 @@ TEST_CASE_FIXTURE(
     const RenderView view = look({0, 1, 0}, {0, 0.3f, -1}, 64, 64);
     for (const WaterFresnel form : {WaterFresnel::Schlick, WaterFresnel::Angle}) {
         world.add(pond, WaterLook{.fresnel = form});
-        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage image = radiance(view);
         int tested = 0;
         for (int y = 30; y < 64; y += 3) {
             const float cosine = -ray_through(view, 32, y).y;
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(
                 const float expected = form == WaterFresnel::Angle
                                            ? fresnel_tso_barsky(cosine)
                                            : fresnel_schlick(cosine, kMirror.refractive_index);
-                CHECK(std::abs(seen.at(32, y, 0) - expected) < 0.01f * expected);
+                CHECK(std::abs(image.at(32, y, 0) - expected) < 0.01f * expected);
                 ++tested;
             }
         }
@@ -116,21 +116,21 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water look: of the surroundings alone it mirrors nothing that stands there") {
+    Look, "water look: with environment reflections only, objects are not reflected") {
     ball({0, 1.3f, -4}, 1, {0, 0, 4});
     const Entity pond = pour(kMirror);
     const RenderView view = look({0, 1.5f, 2}, {0, 0.3f, -2});
-    const auto blue_share = [&] {
+    const auto blueness = [&] {
         const Vec3 mirrored = rgb_at(radiance(view), 32, 32);
         return mirrored.z / std::max(mirrored.x, 1e-3f);
     };
-    CHECK(blue_share() > 5);
+    CHECK(blueness() > 5);
     world.add(pond, WaterLook{.reflection = WaterReflection::Environment});
-    CHECK(blue_share() == test::near(1).epsilon(0.01));
+    CHECK(blueness() == test::near(1).epsilon(0.01));
 }
 
 TEST_CASE(
-    "water reflection: its camera is the image's, mirrored, and mirrored again the same"
+    "water reflection: its camera is mirrored, and mirrored twice the original"
     * technique("water.reflection-refraction-maps")) {
     const RenderView view = with_jitter(
         make_render_view(
@@ -149,11 +149,11 @@ TEST_CASE(
     const glm::mat3 turned{Vec3(pose[0]), Vec3(pose[1]), Vec3(pose[2])};
     CHECK(glm::determinant(turned) == test::near(1));
     for (const Vec3 p : {Vec3(0, 1, -2), Vec3(-3, 0.2f, -5), Vec3(2, 5, -9)}) {
-        const Vec4 seen = view.clip_from_world * Vec4(p.x, 2 * kLevel - p.y, p.z, 1);
+        const Vec4 image = view.clip_from_world * Vec4(p.x, 2 * kLevel - p.y, p.z, 1);
         const Vec4 found = mirrored.clip_from_world * Vec4(p, 1);
-        CHECK(found.x == test::near(seen.x));
-        CHECK(found.y == test::near(-seen.y));
-        CHECK(found.w == test::near(seen.w));
+        CHECK(found.x == test::near(image.x));
+        CHECK(found.y == test::near(-image.y));
+        CHECK(found.w == test::near(image.w));
         // What is above the surface is shown, what is below is not.
         CHECK((glm::dot(mirrored.clip_plane, Vec4(p, 1)) >= 0) == (p.y >= kLevel));
     }
@@ -167,20 +167,20 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: in flat water it is what a mirrored camera sees"
+    Look, "water reflection: in flat water it is the image of a mirrored camera"
               * technique("water.reflection-refraction-maps")) {
     things_above();
     const Vec3 eye = {0, 1.6f, 2};
     const Vec3 target = {0, 0.3f, -2};
     const auto mirrored = [](const Vec3& p) { return Vec3(p.x, 2 * kLevel - p.y, p.z); };
     const gpu::FloatImage truth = radiance(look(mirrored(eye), mirrored(target), 96, 96));
-    // It must not be seen: it is between that camera and the surface.
+    // It must not be visible: it is between that camera and the surface.
     ball({0.1f, -0.5f, 0.2f}, 0.6f, {9, 9, 0});
     world.add(pour(kMirror), WaterLook{.reflection = WaterReflection::Planar, .map_scale = 1});
     const RenderView view = look(eye, target, 96, 96);
     const FrameOutput out = draw(view);
     CHECK(out.statistics.water_reflections == 1);
-    const gpu::FloatImage seen = gpu::read_floats(*out.radiance);
+    const gpu::FloatImage image = gpu::read_floats(*out.radiance);
     const gpu::FloatImage depth = aov(view, "depth");
     int tested = 0;
     double worst = 0;
@@ -191,10 +191,11 @@ TEST_CASE_FIXTURE(
             if (ray.y > -0.1f || std::abs(point.y - kLevel) > 1e-3f) {
                 continue;  // the sky, or what stands before the water
             }
-            const float share = fresnel(-ray.y, kMirror.refractive_index);
+            const float reflectance = fresnel(-ray.y, kMirror.refractive_index);
             for (int c = 0; c < 3; ++c) {
-                const float expected = share * truth.at(x, 95 - y, c);
-                worst = std::max<double>(worst, std::abs(seen.at(x, y, c) - expected) / share);
+                const float expected = reflectance * truth.at(x, 95 - y, c);
+                worst =
+                    std::max<double>(worst, std::abs(image.at(x, y, c) - expected) / reflectance);
             }
             ++tested;
         }
@@ -204,7 +205,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: traced on screen, near and far objects are mirrored to their edges") {
+    Look,
+    "water reflection: traced on screen, near and far objects are reflected up to their edges") {
     ball({-0.6f, 0.9f, -1}, 0.5f, {0.9f, 0.1f, 0.1f});
     ball({1.2f, 0.9f, -3}, 0.4f, {0.1f, 0.9f, 0.2f});
     ball({20, 8, -200}, 40, {0.1f, 0.2f, 0.9f});
@@ -217,7 +219,7 @@ TEST_CASE_FIXTURE(
     const gpu::FloatImage truth_depth = aov(below, "depth");
     pour(kMirror);
     const RenderView view = look(eye, target, kSide, kSide);
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     const gpu::FloatImage depth = aov(view, "depth");
     // What the camera does not see, it cannot mirror.
     const auto is_hidden = [&](const Vec3& point) {
@@ -236,7 +238,7 @@ TEST_CASE_FIXTURE(
             if (ray.y > -0.02f || std::abs(point.y - kLevel) > 1e-3f) {
                 continue;  // the sky, or what stands before the water
             }
-            const float share = fresnel(-ray.y, kMirror.refractive_index);
+            const float reflectance = fresnel(-ray.y, kMirror.refractive_index);
             const Vec3 expected = rgb_at(truth, x, kSide - 1 - y);
             const bool is_sky = expected == Vec3(0.5f);
             if (!is_sky && is_hidden(point_at(below, truth_depth, x, kSide - 1 - y))) {
@@ -251,7 +253,7 @@ TEST_CASE_FIXTURE(
             if (at_edge) {
                 continue;
             }
-            const Vec3 difference = glm::abs(rgb_at(seen, x, y) / share - expected);
+            const Vec3 difference = glm::abs(rgb_at(image, x, y) / reflectance - expected);
             objects += is_sky ? 0 : 1;
             wrong += std::max({difference.x, difference.y, difference.z}) > 0.05f ? 1 : 0;
         }
@@ -263,7 +265,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: waves shift it to what they mirror, or not at all"
+    Look, "water reflection: waves shift it to the reflected point, or not at all"
               * technique("water.reflection-refraction-maps")) {
     // A wall whose color tells where it is.
     MeshData wall = make_square();
@@ -289,7 +291,7 @@ TEST_CASE_FIXTURE(
             pond,
             WaterLook{
                 .reflection = WaterReflection::Planar, .distortion = distortion, .map_scale = 1});
-        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage image = radiance(view);
         world.remove<WaterLook>(pond);
         double sum = 0;
         int tested = 0;
@@ -298,12 +300,14 @@ TEST_CASE_FIXTURE(
                 const Vec3 ray = ray_through(view, x, y);
                 const Vec3 p = point_at(view, depth, x, y);
                 const WaterPoint at = sample_water(surface, {p.x, p.z});
-                const float share = fresnel(-glm::dot(ray, at.normal), water.refractive_index);
+                const float reflectance =
+                    fresnel(-glm::dot(ray, at.normal), water.refractive_index);
                 const Vec3 start = flat ? Vec3(p.x, -p.y, p.z) : p;
                 const Vec3 away = reflect_ray(flat ? Vec3(0, 1, 0) : at.normal, -ray);
                 const Vec3 met = start + away * ((-8 - start.z) / away.z);
                 const Vec2 expected = 0.5f + Vec2(met.x, met.y) / 24.0f;
-                sum += glm::distance(Vec2(seen.at(x, y, 0), seen.at(x, y, 1)) / share, expected);
+                sum += glm::distance(
+                    Vec2(image.at(x, y, 0), image.at(x, y, 1)) / reflectance, expected);
                 ++tested;
             }
         }
@@ -315,7 +319,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: the nearest that asks and is seen has it, once per frame"
+    Look, "water reflection: the nearest visible water that requests it has it, once per frame"
               * technique("water.reflection-refraction-maps")) {
     things_above();
     const RenderView view = look({0, 1.6f, 2}, {0, 0.3f, -2});
@@ -337,14 +341,14 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water refraction: a map of the floor is where bent rays meet it"
+    Look, "water refraction: a floor map is sampled where refracted rays hit it"
               * technique("water.refraction-map")) {
     constexpr float kTile = 16;
     constexpr float kIndex = 1.33f;
     world.resource<Environment>() = {
         .sky = SkyKind::Uniform, .zenith = Vec3(1), .horizon = Vec3(1), .ground = Vec3(1)};
     ImageData map;
-    map.name = "places";
+    map.name = "positions";
     map.width = map.height = 64;
     map.format = PixelFormat::Rgba32F;
     for (int y = 0; y < 64; ++y) {
@@ -362,24 +366,24 @@ TEST_CASE_FIXTURE(
         .refractive_index = kIndex,
         .absorption = Vec3(0),
         .scattering = Vec3(0)};
-    const Affine place = at({-8, 0, -8});  // one copy of the map is at x and z = -8 .. 8
-    const Entity pond = world.create(water, WorldTransform{place});
+    const Affine pose = at({-8, 0, -8});  // one copy of the map is at x and z = -8 .. 8
+    const Entity pond = world.create(water, WorldTransform{pose});
     const auto show = [&](const RenderView& view) {
         world.add(
             pond,
             WaterLook{
                 .refraction = WaterRefraction::Floor, .floor_map = map_id, .floor_tile = kTile});
-        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage image = radiance(view);
         world.remove<WaterLook>(pond);
-        return seen;
+        return image;
     };
     // Where a pixel's color says that its ray ended.
-    const auto met = [&](const gpu::FloatImage& seen, int x, int y, float share) {
-        return (rgb_at(seen, x, y) - Vec3(share)) / (1 - share) * kTile - 8.0f;
+    const auto met = [&](const gpu::FloatImage& image, int x, int y, float reflectance) {
+        return (rgb_at(image, x, y) - Vec3(reflectance)) / (1 - reflectance) * kTile - 8.0f;
     };
     const RenderView view = look({0, 3, 0}, {0, 0, -1.5f}, 64, 64);
     SUBCASE("flat: straight down it is below, at 30 degrees 0.8114 m further") {
-        const gpu::FloatImage seen = show(view);
+        const gpu::FloatImage image = show(view);
         const gpu::FloatImage depth = aov(view, "depth");
         float worst = 0;
         float at_30 = 0;
@@ -395,7 +399,7 @@ TEST_CASE_FIXTURE(
                 if (std::max(std::abs(expected.x), std::abs(expected.z)) > 7.5f) {
                     continue;
                 }
-                const Vec3 found = met(seen, x, y, fresnel(-ray.y, kIndex));
+                const Vec3 found = met(image, x, y, fresnel(-ray.y, kIndex));
                 worst = std::max(
                     worst, glm::distance(Vec2(found.x, found.y), Vec2(expected.x, expected.z)));
                 const float shift = glm::distance(Vec2(found.x, found.y), Vec2(p.x, p.z));
@@ -420,10 +424,10 @@ TEST_CASE_FIXTURE(
             water, {.waves = {{.amplitude = 0.05f, .length = 3, .direction = 0.6f}}}, 2.5, table);
         world.add(pond, table);
         WaterSurface surface;
-        surface.frame = water_frame(place);
+        surface.frame = water_frame(pose);
         surface.water = water;
         surface.waves = &table;
-        const gpu::FloatImage seen = show(view);
+        const gpu::FloatImage image = show(view);
         const gpu::FloatImage depth = aov(view, "depth");
         double sum = 0;
         int tested = 0;
@@ -436,7 +440,7 @@ TEST_CASE_FIXTURE(
                 const Vec3 expected = p + bent * ((2 + p.y) / -bent.y);
                 if (std::max(std::abs(expected.x), std::abs(expected.z)) < 7.5f) {
                     const Vec3 found =
-                        met(seen, x, y, fresnel(-glm::dot(ray, there.normal), kIndex));
+                        met(image, x, y, fresnel(-glm::dot(ray, there.normal), kIndex));
                     sum += glm::distance(Vec2(found.x, found.y), Vec2(expected.x, expected.z));
                     ++tested;
                 }
@@ -459,7 +463,7 @@ TEST_CASE_FIXTURE(
         pond,
         WaterLook{
             .reflection = WaterReflection::Environment, .refraction = WaterRefraction::Shifted});
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     const gpu::FloatImage depth = aov(view, "depth");
     for (int y = 34; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
@@ -467,21 +471,21 @@ TEST_CASE_FIXTURE(
             if (std::abs(point_at(view, depth, x, y).y - kLevel) > 1e-3f) {
                 continue;
             }
-            // Weights of what is mirrored and of what is seen through make 1.
-            const float share = fresnel(-ray.y, 1.333f);
+            // The weights of reflection and refraction sum to 1.
+            const float reflectance = fresnel(-ray.y, 1.333f);
             for (int c = 0; c < 3; ++c) {
-                const float expected = share * 0.5f + (1 - share) * below.at(x, y, c);
-                CHECK(std::abs(seen.at(x, y, c) - expected) < 0.01f * expected);
+                const float expected = reflectance * 0.5f + (1 - reflectance) * below.at(x, y, c);
+                CHECK(std::abs(image.at(x, y, c) - expected) < 0.01f * expected);
             }
         }
     }
 }
 
-TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as normals lean") {
+TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves by the tilt of the normals") {
     for (int i = 0; i < 24; ++i) {
-        const float share = static_cast<float>(i) / 24;
-        const Vec3 middle(static_cast<float>(i % 6) - 2.5f, -0.7f, -static_cast<float>(i / 6));
-        ball(middle, 0.45f, {share, 1 - share, static_cast<float>(i % 2)});
+        const float fraction = static_cast<float>(i) / 24;
+        const Vec3 center(static_cast<float>(i % 6) - 2.5f, -0.7f, -static_cast<float>(i / 6));
+        ball(center, 0.45f, {fraction, 1 - fraction, static_cast<float>(i % 2)});
     }
     const RenderView view = look({0, 3, 1}, {0, 0, -1.5f});
     const gpu::FloatImage below = radiance(view);
@@ -501,7 +505,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as no
                       .reflection = WaterReflection::Environment,
                       .refraction = WaterRefraction::Shifted,
                       .distortion = distortion});
-        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage image = radiance(view);
         const gpu::FloatImage normals = aov(view, "normal");
         int tested = 0;
         int as_expected = 0;
@@ -509,7 +513,8 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as no
         for (int y = 8; y < 56; ++y) {
             for (int x = 8; x < 56; ++x) {
                 const Vec3 normal = rgb_at(normals, x, y);
-                const float share = fresnel(-glm::dot(ray_through(view, x, y), normal), 1.333f);
+                const float reflectance =
+                    fresnel(-glm::dot(ray_through(view, x, y), normal), 1.333f);
                 // A fiftieth of the image where a normal lies flat.
                 const Vec2 lean = {
                     normal.x * right.x + normal.z * right.z,
@@ -517,8 +522,9 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as no
                 const Vec2 shift = 0.02f * distortion * 64.0f * lean;
                 const int from_x = static_cast<int>(static_cast<float>(x) + 0.5f + shift.x);
                 const int from_y = static_cast<int>(static_cast<float>(y) + 0.5f - shift.y);
-                const Vec3 expected = share * 0.5f + (1 - share) * rgb_at(below, from_x, from_y);
-                const float off = glm::distance(rgb_at(seen, x, y), expected);
+                const Vec3 expected =
+                    reflectance * 0.5f + (1 - reflectance) * rgb_at(below, from_x, from_y);
+                const float off = glm::distance(rgb_at(image, x, y), expected);
                 ++tested;
                 as_expected += off < 0.03f ? 1 : 0;
                 moved += from_x != x || from_y != y ? 1 : 0;
@@ -530,7 +536,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as no
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water refraction: however waves shift it, what is above is not seen in the water"
+    Look, "water refraction: shifted by any waves, objects above do not appear in the water"
               * technique("water.reflection-refraction-maps")) {
     ball({0, 1.2f, -2}, 0.7f, {0, 90, 0});
     const Water water = {.size = {20, 20}, .absorption = Vec3(0), .scattering = Vec3(0)};
@@ -542,12 +548,12 @@ TEST_CASE_FIXTURE(
     const RenderView view = look({0, 2, 1}, {0, 0, -2});
     const gpu::FloatImage depth = aov(view, "depth");
     const auto green = [&] {
-        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage image = radiance(view);
         float most = 0;
         for (int y = 18; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
                 const bool is_water = std::abs(point_at(view, depth, x, y).y - kLevel) < 0.105f;
-                most = is_water ? std::max(most, seen.at(x, y, 1)) : most;
+                most = is_water ? std::max(most, image.at(x, y, 1)) : most;
             }
         }
         return most;
@@ -560,7 +566,7 @@ TEST_CASE_FIXTURE(
     CHECK(green() < 0.6f);
 }
 
-TEST_CASE_FIXTURE(Look, "water look: attributes that are asked for are those of the water") {
+TEST_CASE_FIXTURE(Look, "water look: requested attributes are those of the water") {
     ball({0, -1, -2}, 0.6f, {0.9f, 0.5f, 0.1f});
     const Water water = {.size = {30, 30}};
     const Entity pond = pour(water);

@@ -29,8 +29,8 @@ class Pond : public Scene {
         world.insert_resource(Exposure{});
     }
 
-    Entity pour(const Water& water, const Affine& place = at({0, 0, 0})) {
-        return world.create(water, WorldTransform{place});
+    Entity pour(const Water& water, const Affine& pose = at({0, 0, 0})) {
+        return world.create(water, WorldTransform{pose});
     }
     /// Everything around has this radiance.
     void surround(const Vec3& color) {
@@ -95,7 +95,7 @@ PatchSource source_of(const Vec2& half, const Vec3& camera) {
 
 }  // namespace
 
-TEST_CASE("water patches: they cover the water once, and nothing twice") {
+TEST_CASE("water patches: they cover the water exactly once") {
     for (const Vec2 half : {Vec2(20, 20), Vec2(37, 9)}) {
         std::vector<WaterPatch> patches;
         append_water_patches(source_of(half, {3, 1, -2}), patches);
@@ -138,7 +138,7 @@ TEST_CASE(
     CHECK(largest > 1000);
 }
 
-TEST_CASE("water patches: along each ray from the camera the nearer ones come first") {
+TEST_CASE("water patches: along each ray from the camera nearer ones come first") {
     const Vec2 halves[] = {{0, 0}, {90, 40}};
     for (const Vec2& half : halves) {
         const Vec3 camera = {13, 2, -21};
@@ -166,17 +166,16 @@ TEST_CASE("water patches: along each ray from the camera the nearer ones come fi
     }
 }
 
-TEST_CASE("water patches: they stay where they are in the water, however the camera moves") {
+TEST_CASE("water patches: they are fixed in the water, however the camera moves") {
     std::vector<WaterPatch> patches;
     append_water_patches(source_of({0, 0}, {1234.5f, 2, -99.9f}), patches);
     for (const WaterPatch& p : patches) {
         CHECK(std::abs(p.corner.x / p.size - std::round(p.corner.x / p.size)) < 1e-4f);
-        CHECK(std::log2(kWaterReach / p.size) == std::round(std::log2(kWaterReach / p.size)));
+        CHECK(std::log2(kWaterRange / p.size) == std::round(std::log2(kWaterRange / p.size)));
     }
 }
 
-TEST_CASE(
-    "water patches: vertices leave out the waves that are too short for them, and only these") {
+TEST_CASE("water patches: vertices omit exactly the waves that are too short for them") {
     std::vector<WaveLine> lines;
     for (const float length : {19.0f, 11.0f, 4.0f, 2.5f, 0.9f, 0.8f}) {
         lines.push_back({.k = {0, 2 * kPi / length}, .amplitude = 0.02f * length});
@@ -196,7 +195,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water patches: there are never too many, whatever is asked for") {
+TEST_CASE("water patches: there are never more than the maximum, with any settings") {
     std::vector<WaterPatch> patches;
     PatchSource source = source_of({0, 0}, {0, 0.1f, 0});
     source.finest = 1e-6f;
@@ -208,7 +207,7 @@ TEST_CASE("water patches: there are never too many, whatever is asked for") {
     CHECK(patches.size() <= static_cast<std::size_t>(kMaxWaterPatches));
 }
 
-TEST_CASE("ripple atlas: rectangles lie beside each other, none on another") {
+TEST_CASE("ripple atlas: rectangles do not overlap") {
     const IVec2 sizes[] = {{10, 4}, {3, 9}, {7, 7}, {0, 0}, {12, 2}, {5, 5}, {8, 1}};
     IVec2 corners[7];
     const int height = pack_shelves(sizes, 14, corners);
@@ -223,7 +222,7 @@ TEST_CASE("ripple atlas: rectangles lie beside each other, none on another") {
     }
 }
 
-TEST_CASE_FIXTURE(Pond, "water: no water, no pass; the image is the same to the bit") {
+TEST_CASE_FIXTURE(Pond, "water: without water there is no pass, and the image is bit-identical") {
     surround({1, 1, 1});
     floor(-1, 3, {0.2f, 0.5f, 0.7f});
     const RenderView view = look({0, 2, 3}, {0, 0, 0});
@@ -235,37 +234,37 @@ TEST_CASE_FIXTURE(Pond, "water: no water, no pass; the image is the same to the 
     CHECK_FALSE(frame_graph(shared_renderer()).was_run("water"));
 }
 
-TEST_CASE_FIXTURE(Pond, "water: dark and deep, it mirrors the sky by the Fresnel equations") {
+TEST_CASE_FIXTURE(Pond, "water: dark and deep, it reflects the sky by the Fresnel equations") {
     surround({1, 1, 1});
     pour({.absorption = Vec3(1000), .scattering = Vec3(0)});
     const RenderView view = look({0, 1, 0}, {0, 0.3f, -1}, 64, 64);
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     int tested = 0;
     for (int y = 30; y < 64; y += 3) {
         const Vec3 ray = glm::normalize(ray_through(view, 32, y));
         if (-ray.y > 0.02f) {
             CAPTURE(y);
-            CHECK(seen.at(32, y, 0) == test::near(fresnel(-ray.y, 1.333f)).epsilon(0.01).scale(0));
+            CHECK(image.at(32, y, 0) == test::near(fresnel(-ray.y, 1.333f)).epsilon(0.01).scale(0));
             ++tested;
         }
     }
     CHECK(tested > 5);
 }
 
-TEST_CASE_FIXTURE(Pond, "water: light is lost on its way by the law of Beer and Lambert") {
+TEST_CASE_FIXTURE(Pond, "water: light is absorbed along its path by the law of Beer and Lambert") {
     floor(-1.5f, 40, {0.8f, 0.6f, 0.4f});
     const Vec3 absorption = {0.5f, 0.2f, 0.05f};
     pour({.size = {60, 60}, .depth = 1.5f, .absorption = absorption, .scattering = Vec3(0)});
-    const gpu::FloatImage seen = radiance(look({0, 3, 0}, {0, 0, 0}));
+    const gpu::FloatImage image = radiance(look({0, 3, 0}, {0, 0, 0}));
     for (int c = 0; c < 3; ++c) {
         const float through = 1 - fresnel(1, 1.333f);
         const float expected =
             through * Vec3(0.8f, 0.6f, 0.4f)[c] * std::exp(-1.5f * absorption[c]);
-        CHECK(seen.at(32, 32, c) == test::near(expected).epsilon(0.01).scale(0));
+        CHECK(image.at(32, 32, c) == test::near(expected).epsilon(0.01).scale(0));
     }
 }
 
-TEST_CASE_FIXTURE(Pond, "water: clear and thin as air, it is not to be seen") {
+TEST_CASE_FIXTURE(Pond, "water: with the index and absorption of air it is invisible") {
     surround({0.5f, 0.6f, 0.9f});
     floor(-1, 2, {0.8f, 0.6f, 0.4f});
     const RenderView view = look({0, 2, 3}, {0, -0.5f, 0});
@@ -283,7 +282,7 @@ TEST_CASE_FIXTURE(Pond, "water: clear and thin as air, it is not to be seen") {
     CHECK(differ < static_cast<int>(with.pixels.size()) / 50);  // the edge of the floor, by a pixel
 }
 
-TEST_CASE_FIXTURE(Pond, "water: a bottom looks nearer than it is, by the refractive index") {
+TEST_CASE_FIXTURE(Pond, "water: the bottom appears nearer, by the refractive index") {
     // Straight down a mark at depth 2 looks as if at 2 / 1.333.
     floor(-2, 40, {0, 0, 0});
     place(
@@ -291,19 +290,18 @@ TEST_CASE_FIXTURE(Pond, "water: a bottom looks nearer than it is, by the refract
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         affine_from({0, -1.99f, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(0.5f)));
     pour({.size = {60, 60}, .depth = 2, .absorption = Vec3(0), .scattering = Vec3(0)});
-    const gpu::FloatImage seen = radiance(look({0, 1, 0}, {0, 0, 0}, 256, 256));
+    const gpu::FloatImage image = radiance(look({0, 1, 0}, {0, 0, 0}, 256, 256));
     int lit = 0;
     for (int x = 0; x < 256; ++x) {
-        lit += seen.at(x, 128, 0) > 0.5f ? 1 : 0;
+        lit += image.at(x, 128, 0) > 0.5f ? 1 : 0;
     }
     const double half_angle = std::atan(0.5 / (1 + 1.99 / 1.333));  // of small angles
     CHECK(lit == test::near(256 * std::tan(half_angle)).epsilon(0.05).scale(0));
 }
 
-TEST_CASE_FIXTURE(
-    Pond, "water: what is drawn is what the query says, waves, ripples and sea alike") {
+TEST_CASE_FIXTURE(Pond, "water: the drawn surface matches the query, for waves, ripples and sea") {
     const Water water = {.size = {40, 40}, .absorption = Vec3(1)};
-    const Affine place = affine_from({1, 0.5f, -2}, glm::angleAxis(0.7f, Vec3(0, 1, 0)), {1, 1, 1});
+    const Affine pose = affine_from({1, 0.5f, -2}, glm::angleAxis(0.7f, Vec3(0, 1, 0)), {1, 1, 1});
     WaveTable table;
     fill_wave_table(
         water,
@@ -319,9 +317,9 @@ TEST_CASE_FIXTURE(
     step_ocean(
         {.wind_speed = 4, .cascades = 2, .patch = 60, .resolution = 32}, 2.5, 1.0f / 60, sea);
     for (int part = 0; part < 4; ++part) {
-        const Entity pond = pour(water, place);
+        const Entity pond = pour(water, pose);
         WaterSurface surface;
-        surface.frame = water_frame(place);
+        surface.frame = water_frame(pose);
         surface.water = water;
         if (part == 0 || part == 3) {
             world.add(pond, table);
@@ -356,7 +354,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Pond, "water: without ripples it is flat, also at its origin, whoever has some") {
+TEST_CASE_FIXTURE(
+    Pond, "water: without ripples it is flat, also at its origin, even if others have some") {
     pour({.size = {40, 40}});
     const Water other = {.size = {2, 2}};
     RippleState raised = make_ripples(other, {.cell = 0.25f}, 1.0f / 60);
@@ -421,7 +420,7 @@ TEST_CASE_FIXTURE(Pond, "water: its velocity is that of the surface; at rest it 
     CHECK(tested > 20);
 }
 
-TEST_CASE_FIXTURE(Pond, "water: only pixels that show a pool change, each by its own water") {
+TEST_CASE_FIXTURE(Pond, "water: only pixels that show a pool change, each by its own parameters") {
     surround({0.1f, 0.1f, 0.1f});
     const RenderView view = look({0, 5, 0.1f}, {0, 0, 0});
     const gpu::FloatImage without = radiance(view);
@@ -451,7 +450,7 @@ TEST_CASE_FIXTURE(Pond, "water: only pixels that show a pool change, each by its
     CHECK(pools[1] > 20);
 }
 
-TEST_CASE_FIXTURE(Pond, "water: a hundred pools are one draw") {
+TEST_CASE_FIXTURE(Pond, "water: a hundred pools take one draw call") {
     surround({1, 1, 1});
     const RenderView view = look({0, 6, 12}, {0, 0, 0});
     draw(view);
@@ -472,18 +471,18 @@ TEST_CASE_FIXTURE(Pond, "water: a hundred pools are one draw") {
     CHECK(shared_device().stats().draws < 40);
 }
 
-TEST_CASE_FIXTURE(Pond, "water: from below, it mirrors all beyond the critical angle") {
+TEST_CASE_FIXTURE(Pond, "water: from below, it reflects totally beyond the critical angle") {
     surround({1, 1, 1});
     pour({.absorption = Vec3(0), .scattering = Vec3(0)});
     const RenderView view = look({0, -1, 0}, {0, 0, -0.2f}, 128, 128);
-    const gpu::FloatImage seen = radiance(view);
+    const gpu::FloatImage image = radiance(view);
     int inside = 0;
     int outside = 0;
     for (int y = 0; y < 128; y += 4) {
         for (int x = 0; x < 128; x += 4) {
             const Vec3 ray = glm::normalize(ray_through(view, x, y));
             const float angle = degrees(std::acos(std::clamp(ray.y, -1.0f, 1.0f)));
-            const float light = seen.at(x, y, 0);
+            const float light = image.at(x, y, 0);
             if (angle < 45) {
                 CHECK(light > 0.8f);
                 ++inside;
@@ -497,23 +496,23 @@ TEST_CASE_FIXTURE(Pond, "water: from below, it mirrors all beyond the critical a
     CHECK(outside > 10);
 }
 
-TEST_CASE_FIXTURE(Pond, "water veil: what a camera in the water sees is dimmed by its distance") {
+TEST_CASE_FIXTURE(Pond, "water veil: under water, surfaces are dimmed by their distance") {
     const Vec3 absorption = {0.4f, 0.1f, 0.02f};
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0.8f, 0.6f, 0.4f, 1}}),
         affine_from({0, -4, -3}, {1, 0, 0, 0}, Vec3(3)));
     pour({.absorption = absorption, .scattering = Vec3(0)});
-    const gpu::FloatImage seen = radiance(look({0, -4, 0}, {0, -4, -1}, 65, 65));
+    const gpu::FloatImage image = radiance(look({0, -4, 0}, {0, -4, -1}, 65, 65));
     CHECK(frame_graph(shared_renderer()).was_run("water veil"));
     for (int c = 0; c < 3; ++c) {
         const float expected = Vec3(0.8f, 0.6f, 0.4f)[c] * std::exp(-3 * absorption[c]);
-        CHECK(seen.at(32, 32, c) == test::near(expected).epsilon(0.005).scale(0));
+        CHECK(image.at(32, 32, c) == test::near(expected).epsilon(0.005).scale(0));
     }
 }
 
 TEST_CASE_FIXTURE(
-    Pond, "water veil: above the water, beside it and below its bottom there is none") {
+    Pond, "water veil: above the water, outside it and below its bottom there is none") {
     surround({1, 1, 1});
     pour({.size = {4, 4}, .depth = 2});
     for (const Vec3 eye : {Vec3(0, 1, 0), Vec3(3, -1, 0), Vec3(0, -3, 0)}) {
@@ -524,27 +523,28 @@ TEST_CASE_FIXTURE(
     CHECK(frame_graph(shared_renderer()).was_run("water veil"));
 }
 
-TEST_CASE_FIXTURE(Pond, "water veil: endless water has one color, the darker the deeper") {
+TEST_CASE_FIXTURE(Pond, "water veil: unbounded water has one color, darker with depth") {
     surround({1, 1, 1});
     const Vec3 scattering = {0.01f, 0.02f, 0.04f};
     pour({.absorption = Vec3(0.2f), .scattering = scattering});
     float last = 1;
     for (const float depth : {2.0f, 4.0f, 8.0f}) {
-        const gpu::FloatImage seen =
+        const gpu::FloatImage image =
             radiance(look({0, -depth, 0}, {0, -depth - 1, -0.01f}, 33, 33));
-        CHECK(seen.at(16, 16, 0) < seen.at(16, 16, 1));
-        CHECK(seen.at(16, 16, 1) < seen.at(16, 16, 2));
-        CHECK(seen.at(16, 16, 2) < last);
+        CHECK(image.at(16, 16, 0) < image.at(16, 16, 1));
+        CHECK(image.at(16, 16, 1) < image.at(16, 16, 2));
+        CHECK(image.at(16, 16, 2) < last);
         // Straight down: a third of backscatter over extinction, of what is left of the light.
         const float extinction = 0.2f + scattering.z;
         const float expected =
             0.33f * scattering.z / extinction * std::exp(-1.2f * extinction * depth);
-        CHECK(seen.at(16, 16, 2) == test::near(expected).epsilon(0.02).scale(0));
-        last = seen.at(16, 16, 2);
+        CHECK(image.at(16, 16, 2) == test::near(expected).epsilon(0.02).scale(0));
+        last = image.at(16, 16, 2);
     }
 }
 
-TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water meets the lens") {
+TEST_CASE_FIXTURE(
+    Pond, "water veil: at the surface the water line is where the water crosses the lens") {
     // A camera in still water's plane: the lower half of the image is under it.
     place(
         add(make_square()),
@@ -552,12 +552,12 @@ TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water 
         affine_from({0, 0, -3}, {1, 0, 0, 0}, Vec3(6)));
     const Entity pond = pour({.absorption = Vec3(0.3f), .scattering = Vec3(0)});
     for (const float height : {0.0f, 0.01f, -0.01f}) {
-        const gpu::FloatImage seen = radiance(look({0, height, 0}, {0, height, -1}, 64, 64));
-        for (const float value : seen.pixels) {
+        const gpu::FloatImage image = radiance(look({0, height, 0}, {0, height, -1}, 64, 64));
+        for (const float value : image.pixels) {
             REQUIRE(std::isfinite(value));
         }
-        CHECK(seen.at(32, 62, 0) < 0.5f);
-        CHECK(seen.at(32, 2, 0) == test::near(1).epsilon(0.01).scale(0));
+        CHECK(image.at(32, 62, 0) < 0.5f);
+        CHECK(image.at(32, 2, 0) == test::near(1).epsilon(0.01).scale(0));
     }
     // Waves move the line: a crest on the camera covers it.
     WaveTable table;

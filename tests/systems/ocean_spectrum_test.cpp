@@ -70,7 +70,7 @@ double sum_of_grid(const OceanEnergy& sea, int size, double patch) {
 }  // namespace
 
 TEST_CASE(
-    "ocean_spectrum: the wind sea has the values of its formula and one maximum, at f_p"
+    "ocean_spectrum: the wind sea has the values of its formula and a single maximum, at f_p"
     * technique("water.ocean-spectrum")) {
     CHECK(wind_sea_energy(0.1, 0.1) == test::near(14.329646).epsilon(1e-6).scale(0));
     CHECK(wind_sea_energy(0.2, 0.1) == test::near(1.445521).epsilon(1e-6).scale(0));
@@ -85,7 +85,7 @@ TEST_CASE(
         CHECK(wind_sea_energy(f, 0.1) < last);
         last = wind_sea_energy(f, 0.1);
     }
-    CHECK(wind_sea_energy(1e-3, 0.1) == 0);  // no NaN on the way to none
+    CHECK(wind_sea_energy(1e-3, 0.1) == 0);  // no NaN toward 0
     CHECK(wind_sea_energy(0, 0.1) == 0);
     CHECK(wind_sea_energy(-1, 0.1) == 0);
 }
@@ -135,7 +135,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean_spectrum: all shares of a frequency make 1, whatever spreads them"
+    "ocean_spectrum: spreading integrates to 1 over all directions, with every method"
     * technique("water.ocean-spectrum")) {
     for (const OceanSpreading spreading : kSpreadings) {
         for (const float swell : {0.0f, 0.4f, 1.0f}) {
@@ -153,7 +153,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean_spectrum: shares are even about the wind, and most where it blows to"
+    "ocean_spectrum: spreading is symmetric about the wind, with its maximum downwind"
     * technique("water.ocean-spectrum")) {
     for (const OceanSpreading spreading : kSpreadings) {
         CAPTURE(static_cast<int>(spreading));
@@ -161,12 +161,12 @@ TEST_CASE(
         for (const double x : {0.5, 1.0, 3.0}) {
             const double ahead = directional_density(sea, x * sea.peak, 0);
             for (double theta = 0.1; theta < 3.14; theta += 0.1) {
-                const double share = directional_density(sea, x * sea.peak, theta);
-                CHECK(share <= ahead);
-                CHECK(share >= 0);
-                CHECK(directional_density(sea, x * sea.peak, -theta) == share);
+                const double density = directional_density(sea, x * sea.peak, theta);
+                CHECK(density <= ahead);
+                CHECK(density >= 0);
+                CHECK(directional_density(sea, x * sea.peak, -theta) == density);
                 const double turned = directional_density(sea, x * sea.peak, theta + kTurn);
-                CHECK(turned == test::near(share).epsilon(1e-9).scale(0));
+                CHECK(turned == test::near(density).epsilon(1e-9).scale(0));
             }
         }
     }
@@ -174,7 +174,7 @@ TEST_CASE(
     CHECK(directional_density(sea, 2 * sea.peak, 0.5 * kTurn) < 1e-12);
 }
 
-TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner join where they change") {
+TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner are continuous") {
     CHECK(hasselmann_spread_power(1, 0.8) == test::near(6.97));
     CHECK(ratio(hasselmann_spread_power(0.5, 0.8), 6.97 * std::pow(0.5, 4.06)) < 1e-12);
     // Where the wind is 1.17 times as fast as the waves the power is that of the first study.
@@ -198,7 +198,7 @@ TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner join where
     }
 }
 
-TEST_CASE("ocean_spectrum: swell gathers long waves about the wind, and short ones less") {
+TEST_CASE("ocean_spectrum: swell narrows long waves about the wind, and short ones less") {
     CHECK(swell_power(1, 0) == 0);
     CHECK(swell_power(1, 1) == test::near(16 * std::tanh(1.0)));
     CHECK(swell_power(1, 0.5) == test::near(4 * std::tanh(1.0)));
@@ -209,15 +209,15 @@ TEST_CASE("ocean_spectrum: swell gathers long waves about the wind, and short on
         for (const float swell : {0.0f, 0.3f, 0.6f, 1.0f}) {
             const OceanEnergy sea = make_ocean_energy({.spreading = spreading, .swell = swell});
             for (const int i : {0, 1}) {
-                const double share = directional_density(sea, (i == 0 ? 0.7 : 3.0) * sea.peak, 0);
-                CHECK(share > last[i]);
-                last[i] = share;
+                const double density = directional_density(sea, (i == 0 ? 0.7 : 3.0) * sea.peak, 0);
+                CHECK(density > last[i]);
+                last[i] = density;
             }
         }
     }
 }
 
-TEST_CASE("ocean_spectrum: JONSWAP peaks at omega_p, gamma times as high, and is 1's otherwise") {
+TEST_CASE("ocean_spectrum: JONSWAP peaks at omega_p, gamma times as high as without enhancement") {
     const double alpha = 0.01;
     for (const double gamma : {1.0, 3.3, 7.0}) {
         const double peak = jonswap_energy(0.8, 0.8, alpha, gamma);
@@ -233,13 +233,13 @@ TEST_CASE("ocean_spectrum: JONSWAP peaks at omega_p, gamma times as high, and is
     CHECK(ratio(jonswap_energy(1.1, 0.8, alpha, 1), shape) < 1e-12);
 }
 
-TEST_CASE("ocean_spectrum: under JONSWAP a sea is as high as gamma says, and grows with fetch") {
+TEST_CASE("ocean_spectrum: under JONSWAP the wave height follows gamma and grows with fetch") {
     for (const double gamma : {1.0, 2.0, 3.3, 7.0}) {
         const double m0 = integrate_log(
             1e-2, 1e4, [&](double omega) { return jonswap_energy(omega, 0.8, 0.01, gamma); });
         // A fit of Yamaguchi 1984; 1/5 at gamma 1.
-        const double share = 0.06533 * std::pow(gamma, 0.8015) + 0.13467;
-        CHECK(ratio(m0, share * 0.01 * square(kGravity) / std::pow(0.8, 4)) < 0.01);
+        const double density = 0.06533 * std::pow(gamma, 0.8015) + 0.13467;
+        CHECK(ratio(m0, density * 0.01 * square(kGravity) / std::pow(0.8, 4)) < 0.01);
     }
     double last_height = 0;
     double last_peak = 100;
@@ -259,7 +259,7 @@ TEST_CASE("ocean_spectrum: under JONSWAP a sea is as high as gamma says, and gro
     CHECK(ratio(sea.alpha, 0.010061122) < 1e-6);
 }
 
-TEST_CASE("ocean_spectrum: Phillips' integral is alpha L^2 / 4, his peak at k L = sqrt(2/3)") {
+TEST_CASE("ocean_spectrum: Phillips' integral is alpha L^2 / 4, its peak at k L = sqrt(2/3)") {
     for (const double wind : {4.0, 10.0, 30.0}) {
         const double length = square(wind) / kGravity;
         const double sum = integrate_log(
@@ -274,7 +274,7 @@ TEST_CASE("ocean_spectrum: Phillips' integral is alpha L^2 / 4, his peak at k L 
     CHECK(phillips_energy(1e-9, 10) == 0);
 }
 
-TEST_CASE("ocean_spectrum: a floor takes energy from long waves (TMA)") {
+TEST_CASE("ocean_spectrum: finite depth takes energy from long waves (TMA)") {
     for (const double depth : {1.0, 10.0, 200.0}) {
         const double unit = std::sqrt(kGravity / depth);  // omega where omega sqrt(h / g) = 1
         double last = 0;
@@ -303,7 +303,7 @@ TEST_CASE("ocean_spectrum: a floor takes energy from long waves (TMA)") {
 }
 
 TEST_CASE(
-    "ocean_spectrum: over wave numbers there is as much energy as over frequencies"
+    "ocean_spectrum: the energy over wave numbers equals that over frequencies"
     * technique("water.ocean-spectrum")) {
     for (const OceanSpectrum spectrum : kSpectra) {
         for (const float depth : {3.0f, 5000.0f}) {
@@ -334,7 +334,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean_spectrum: summed over the grid of a patch it is m0, but for what does not fit"
+    "ocean_spectrum: summed over the grid of a patch it is m0, less the waves that do not fit"
     * technique("water.fft-synthesis")) {
     const OceanEnergy sea = wind_sea_of_peak(0.2);
     CHECK(ratio(sum_of_grid(sea, 256, 200), 0.062462) < 1e-5);
@@ -343,7 +343,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean_spectrum: without wind there is no energy, and nowhere NaN"
+    "ocean_spectrum: without wind there is no energy and no NaN"
     * technique("water.ocean-spectrum")) {
     for (const OceanSpectrum spectrum : kSpectra) {
         for (const OceanSpreading spreading : kSpreadings) {

@@ -101,13 +101,15 @@ OceanCascade lone_wave(int size, float patch, int n, int m, float depth, float h
     Ocean still = {.wind_speed = 0, .depth = depth, .cascades = 1, .patch = patch};
     still.resolution = size;
     OceanCascade cascade = make_ocean_cascades(still).front();
-    const auto place = [&](int i, int j) { return (i + size) % size * size + (j + size) % size; };
+    const auto index_of = [&](int i, int j) {
+        return (i + size) % size * size + (j + size) % size;
+    };
     const double k = kTurn / static_cast<double>(patch) * std::hypot(n, m);
     const float omega = static_cast<float>(wave_frequency(k, depth));
-    cascade.ahead_re[place(n, m)] = h0;
-    cascade.behind_re[place(-n, -m)] = h0;
-    cascade.frequency[place(n, m)] = omega;
-    cascade.frequency[place(-n, -m)] = omega;
+    cascade.ahead_re[index_of(n, m)] = h0;
+    cascade.behind_re[index_of(-n, -m)] = h0;
+    cascade.frequency[index_of(n, m)] = omega;
+    cascade.frequency[index_of(-n, -m)] = omega;
     return cascade;
 }
 
@@ -127,7 +129,7 @@ double phase_of(const OceanCascade& cascade, int n, int m) {
 }  // namespace
 
 TEST_CASE(
-    "ocean: every field is the sum of its travelling waves, to 1e-5 of the largest"
+    "ocean: every field is the sum of its travelling waves, within 1e-5 of the maximum"
     * technique("water.fft-synthesis")) {
     for (const double time : {0.0, 12.34, 3600.0}) {
         const OceanState state = ocean_at_time(kSmall, time);
@@ -157,7 +159,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: heights are real, what is left over is below 1e-6 of the largest"
+    "ocean: heights are real, with an imaginary part below 1e-6 of the maximum"
     * technique("water.fft-synthesis")) {
     Ocean ocean = kSmall;
     ocean.choppiness = 0;  // then shift_x is the imaginary part of the height's transform
@@ -169,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: a lone wave is a cosine that shifts by the sine, toward its crests"
+    "ocean: a single wave is a cosine with a sine shift, toward its crests"
     * technique("water.fft-synthesis")) {
     OceanCascade cascade = lone_wave(32, 40, 3, 0, 1000);
     synthesize_waves(cascade, 0.8f, 0.0);
@@ -186,7 +188,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: waves run along their wave numbers as fast as the dispersion says, to 0.1 %"
+    "ocean: waves run along their wave vectors at the dispersion's speed, within 0.1 %"
     * technique("water.fft-synthesis")) {
     struct Case {
         int n, m;
@@ -210,7 +212,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: the variance of its heights is the spectrum's, to 5 % over 32 seeds"
+    "ocean: the variance of its heights is the spectrum's, within 5 % over 32 seeds"
     * technique("water.fft-synthesis")) {
     Ocean ocean = {.cascades = 1, .patch = 100, .resolution = 64};
     ocean.wind_speed = static_cast<float>(0.13 * kGravity / 0.2);  // peak at 0.2 Hz
@@ -223,7 +225,7 @@ TEST_CASE(
     CHECK(std::abs(4 * std::sqrt(sum / 32) / 1.000154 - 1) < 0.05);
 }
 
-TEST_CASE("ocean: cascades share the spectrum, and together are as high as it says, to 5 %") {
+TEST_CASE("ocean: cascades split the spectrum, and together have its variance, within 5 %") {
     for (const OceanSpectrum spectrum : {OceanSpectrum::WindSea, OceanSpectrum::Jonswap}) {
         Ocean ocean = {.spectrum = spectrum, .wind_speed = 5, .patch = 150, .resolution = 32};
         const OceanEnergy sea = make_ocean_energy(ocean);
@@ -240,7 +242,7 @@ TEST_CASE("ocean: cascades share the spectrum, and together are as high as it sa
     }
 }
 
-TEST_CASE("ocean: each wave number is in one cascade, and no band is left out") {
+TEST_CASE("ocean: each wave number is in exactly one cascade") {
     for (const int resolution : {16, 32, 64, 256}) {
         CAPTURE(resolution);
         const std::vector<OceanCascade> cascades =
@@ -276,7 +278,7 @@ TEST_CASE("ocean: each wave number is in one cascade, and no band is left out") 
 }
 
 TEST_CASE(
-    "ocean: a patch repeats, and a wave fits into it a whole number of times"
+    "ocean: a patch repeats, and each wave has a whole number of periods in it"
     * technique("water.fft-synthesis")) {
     const std::vector<OceanCascade> cascades = make_ocean_cascades(kSmall);
     for (const OceanCascade& cascade : cascades) {
@@ -297,7 +299,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: under wind at 45 degrees waves gather on the diagonal and run along it"
+    "ocean: under wind at 45 degrees waves concentrate on the diagonal and run along it"
     * technique("water.fft-synthesis")) {
     Ocean ocean = {.swell = 1, .cascades = 1, .patch = 100, .resolution = 64};
     ocean.wind_speed = 6;
@@ -327,7 +329,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: with a loop period all is as it was when it has passed, and not before"
+    "ocean: with a loop period it repeats after that time, and not before"
     * technique("water.fft-synthesis")) {
     Ocean ocean = kSmall;
     ocean.loop_period = 20;
@@ -349,7 +351,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "ocean: a seed gives its sea, to the bit; another seed another; finer grids add waves"
+    "ocean: a seed is reproducible bit by bit, another seed differs, finer grids add waves"
     * technique("water.fft-synthesis")) {
     const OceanState once = ocean_at_time(kSmall, 3.0);
     CHECK(same_fields(once, ocean_at_time(kSmall, 3.0)));
@@ -372,7 +374,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("ocean: any number of threads and any order give the same bits") {
+TEST_CASE("ocean: any number of threads and any order are bit-identical") {
     const int before = thread_count();
     set_thread_count(1);
     Ocean ocean = kSmall;
@@ -394,7 +396,7 @@ TEST_CASE("ocean: any number of threads and any order give the same bits") {
     set_thread_count(before);
 }
 
-TEST_CASE("ocean: vectors of any width give the bits of one lane") {
+TEST_CASE("ocean: SIMD of any width is bit-identical to one lane") {
     const OceanState state = ocean_at_time(kSmall, 0.0);
     for (const OceanCascade& cascade : state.cascades) {
         std::vector<float> wide(kOceanPairs * 2 * kFftColumns * 32);
@@ -414,7 +416,7 @@ TEST_CASE("ocean: vectors of any width give the bits of one lane") {
     }
 }
 
-TEST_CASE("ocean: the last fields are those of one step earlier, from the first step on") {
+TEST_CASE("ocean: the previous fields are those of one step earlier, from the first step on") {
     OceanState state;
     step_ocean(kSmall, 2.0, kStep, state);
     const auto has_last_of = [&](double time) {
@@ -439,7 +441,7 @@ TEST_CASE("ocean: the last fields are those of one step earlier, from the first 
     CHECK(has_last_of(50.0));
 }
 
-TEST_CASE("ocean: foam fades by an e-th in its time, and grows where water is squeezed") {
+TEST_CASE("ocean: foam decays to 1 / e in its lifetime, and grows where water is compressed") {
     OceanCascade calm = lone_wave(16, 40, 1, 0, 1000, 0.0f);
     synthesize_waves(calm, 1.0f, 0.0);
     OceanState state;
@@ -470,7 +472,7 @@ TEST_CASE("ocean: foam fades by an e-th in its time, and grows where water is sq
     CHECK(foam.coverage[8] == 0);  // the trough
 }
 
-TEST_CASE("ocean: foam grows by how little area the determinant of the shift leaves") {
+TEST_CASE("ocean: foam grows with the compression given by the Jacobian of the shift") {
     Ocean ocean = kSmall;
     ocean.wind_speed = 20;
     ocean.choppiness = 2;
@@ -527,7 +529,7 @@ TEST_CASE("ocean: foam stays between 0 and 1 for steps of any length") {
     }
 }
 
-TEST_CASE("ocean: without wind it is flat; what is out of range is brought within") {
+TEST_CASE("ocean: without wind it is flat; settings out of range are clamped") {
     Ocean calm = kSmall;
     calm.wind_speed = 0;
     const OceanState still = ocean_at_time(calm, 1.0);
@@ -561,7 +563,7 @@ TEST_CASE("ocean: without wind it is flat; what is out of range is brought withi
     CHECK(clamp_ocean(kSmall) == kSmall);
 }
 
-TEST_CASE("ocean: it is as high after an hour, or a day, as at first") {
+TEST_CASE("ocean: its height is the same after an hour, or a day") {
     OceanState state;
     Ocean ocean = kSmall;
     ocean.patch = 300;  // many waves: the sum of their energies hardly beats
@@ -579,7 +581,7 @@ TEST_CASE("ocean: it is as high after an hour, or a day, as at first") {
     CHECK(mean[2] / mean[0] == test::near(1).epsilon(0.05).scale(0));
 }
 
-TEST_CASE("ocean: a world steps it, and goes on with the same bits from a snapshot") {
+TEST_CASE("ocean: a world steps it, and continues bit-identically from a snapshot") {
     register_all_components();
     Ocean ocean = kSmall;
     ocean.foam_threshold = 1;

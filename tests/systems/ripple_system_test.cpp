@@ -6,7 +6,7 @@
 
 namespace limn::ripple_system_test {
 
-TEST_CASE("ripples: a ring ages by the step and is gone when it has ended") {
+TEST_CASE("ripples: a ring ages by the step and is removed at its end") {
     World world;
     world.insert_resource(FrameTime{.step = 0.25f});
     const Entity e = world.create(RippleRing{.age = -0.25f, .duration = 0.75f});
@@ -20,7 +20,7 @@ TEST_CASE("ripples: a ring ages by the step and is gone when it has ended") {
     CHECK(world.alive(e));
 }
 
-TEST_CASE("ripples: a ring with a period begins anew") {
+TEST_CASE("ripples: a ring with a period restarts") {
     World world;
     world.insert_resource(FrameTime{.step = 0.25f});
     const Entity e = world.create(RippleRing{.duration = 0.5f, .period = 1});
@@ -30,7 +30,7 @@ TEST_CASE("ripples: a ring with a period begins anew") {
     }
 }
 
-TEST_CASE("ripples: one of the screen ends after its duration") {
+TEST_CASE("ripples: a screen ripple ends after its duration") {
     World world;
     world.insert_resource(FrameTime{.step = 0.25f});
     const Entity e = world.create(ScreenRipple{.duration = 0.5f});
@@ -41,7 +41,7 @@ TEST_CASE("ripples: one of the screen ends after its duration") {
 }
 
 TEST_CASE(
-    "ripples: they come and go with their age, and are nothing before and after"
+    "ripples: they fade in and out with age, and are 0 before and after"
     * technique("post.scene-ripple")) {
     for (const float age : {-1.0f, 0.0f, 0.5f, 2.0f}) {
         CHECK(ripple_fade(ScreenRipple{.age = age, .duration = 0.5f}) == 0);

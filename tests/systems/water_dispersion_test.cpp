@@ -20,7 +20,7 @@ double length_at(double depth) {
 
 }  // namespace
 
-TEST_CASE("water_dispersion: in deep water a wave is as fast as the root of its length") {
+TEST_CASE("water_dispersion: in deep water the speed grows with the root of the wavelength") {
     CHECK(phase_speed(number_of_length(1), kDeep) == test::near(1.249524).epsilon(1e-6).scale(0));
     CHECK(phase_speed(number_of_length(10), kDeep) == test::near(3.951342).epsilon(1e-6).scale(0));
     CHECK(
@@ -33,7 +33,7 @@ TEST_CASE("water_dispersion: in deep water a wave is as fast as the root of its 
         wave_frequency(k, INFINITY) == test::near(std::sqrt(kGravity * k)).epsilon(1e-14).scale(0));
 }
 
-TEST_CASE("water_dispersion: waves of one period shorten and slow down over shoals") {
+TEST_CASE("water_dispersion: waves of one period get shorter and slower over shoals") {
     CHECK(length_at(1000) == test::near(39.0327).epsilon(1e-5).scale(0));
     CHECK(length_at(1000) / 5 == test::near(7.80655).epsilon(1e-5).scale(0));
     CHECK(length_at(20) / 5 == test::near(7.78213).epsilon(1e-5).scale(0));
@@ -49,7 +49,7 @@ TEST_CASE("water_dispersion: waves of one period shorten and slow down over shoa
     }
 }
 
-TEST_CASE("water_dispersion: much shallower than a wave, all are as fast as the root of g h") {
+TEST_CASE("water_dispersion: in very shallow water all waves have the speed sqrt(g h)") {
     CHECK(phase_speed(number_of_length(10), 10) == test::near(3.951328).epsilon(1e-6).scale(0));
     CHECK(phase_speed(number_of_length(100), 1) == test::near(3.130034).epsilon(1e-6).scale(0));
     const double limit = std::sqrt(kGravity * 1.0);
@@ -60,7 +60,7 @@ TEST_CASE("water_dispersion: much shallower than a wave, all are as fast as the 
     CHECK(group_speed(0, 1) == test::near(limit).epsilon(1e-12).scale(0));
 }
 
-TEST_CASE("water_dispersion: the wave number of a frequency has that frequency") {
+TEST_CASE("water_dispersion: the wave number of a frequency inverts the frequency") {
     for (double depth = 1e-3; depth < 1e5; depth *= 3) {
         for (double omega = 1e-3; omega < 100; omega *= 1.7) {
             CAPTURE(depth);
@@ -71,7 +71,7 @@ TEST_CASE("water_dispersion: the wave number of a frequency has that frequency")
     }
 }
 
-TEST_CASE("water_dispersion: the group speed is the slope of the frequency") {
+TEST_CASE("water_dispersion: the group speed is the derivative of the frequency") {
     for (double depth = 0.1; depth < 1000; depth *= 4) {
         for (double k = 1e-3; k < 30; k *= 2) {
             CAPTURE(depth);
@@ -84,7 +84,7 @@ TEST_CASE("water_dispersion: the group speed is the slope of the frequency") {
     }
 }
 
-TEST_CASE("water_dispersion: nothing runs on land, and no time or place makes NaN") {
+TEST_CASE("water_dispersion: on land speeds are 0, and no input gives NaN") {
     CHECK(wave_frequency(1, 0) == 0);
     CHECK(wave_frequency(1, -3) == 0);
     CHECK(wave_frequency(0, 10) == 0);

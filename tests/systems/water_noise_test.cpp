@@ -35,13 +35,13 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water noise: it and its slope have no jumps, at the borders of its cells neither"
+    "water noise: it and its slope are continuous, also at cell borders"
     * technique("water.noise-surface")) {
     std::mt19937 random(2);
-    std::uniform_real_distribution<float> share(0, 1);
+    std::uniform_real_distribution<float> unit(0, 1);
     constexpr float kH = 1e-3f;
     for (int i = 0; i < 500; ++i) {
-        Vec3 at = {share(random), share(random), share(random)};
+        Vec3 at = {unit(random), unit(random), unit(random)};
         at[i % 3] = 2;  // on a border
         Vec3 step(0);
         step[i % 3] = kH;
@@ -72,7 +72,7 @@ TEST_CASE("water noise: each octave is half as high, twice as fine and twice as 
 }
 
 TEST_CASE(
-    "water noise: heights lie between the least and the greatest, normals look up"
+    "water noise: heights are within their bounds, and normals point up"
     * technique("water.noise-surface")) {
     HeightField field;
     fill_noise_field({}, 2.5, field);
@@ -95,7 +95,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water noise: normals are those of the heights at the points around"
+    "water noise: normals match the heights of the neighboring points"
     * technique("water.noise-surface")) {
     const NoiseSurface noise = {.size = {4, 8}, .points = 33, .amplitude = 0.4f};
     HeightField field;
@@ -114,7 +114,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water noise: the same time is the same field, another time another"
+    "water noise: the same time gives the same field, another time another"
     * technique("water.noise-surface")) {
     HeightField a;
     HeightField b;
@@ -127,7 +127,7 @@ TEST_CASE(
     CHECK(a.height != b.height);
 }
 
-TEST_CASE("water noise: odd settings make a level surface") {
+TEST_CASE("water noise: invalid settings give a level surface") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     for (const NoiseSurface& noise :
          {NoiseSurface{.size = {0, 0}, .points = 0}, NoiseSurface{.amplitude = kNan},
@@ -141,7 +141,7 @@ TEST_CASE("water noise: odd settings make a level surface") {
     CHECK(noise_height({}, {kNan, 0}, 1) == 0);
 }
 
-TEST_CASE("water noise: a world keeps its surfaces moving") {
+TEST_CASE("water noise: a world animates its surfaces") {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity pool = world.create(Transform{}, NoiseSurface{.points = 9});

@@ -73,11 +73,12 @@ struct Sea {
         }
         surface.ocean = &ocean;
     }
-    /// A place over the water, in the world; not nearer to its edges than a meter.
+    /// A position over the water, in the world; at least a meter from its edges.
     [[nodiscard]] Vec2 random_place(std::mt19937& random) const {
-        std::uniform_real_distribution<float> share(-0.5f, 0.5f);
+        std::uniform_real_distribution<float> fraction(-0.5f, 0.5f);
         const Vec2 size = surface.water.size - 2.0f;
-        const Vec3 at = surface.frame.world({share(random) * size.x, 0, share(random) * size.y});
+        const Vec3 at =
+            surface.frame.world({fraction(random) * size.x, 0, fraction(random) * size.y});
         return {at.x, at.z};
     }
 
@@ -95,7 +96,7 @@ float height_at(const WaterSurface& surface, const Vec2& at) {
 
 }  // namespace
 
-TEST_CASE("water query: what it finds is on the surface, above the place asked for") {
+TEST_CASE("water query: the result is on the surface, above the queried position") {
     Sea sea;
     sea.add_ripples();
     sea.add_ocean();
@@ -117,7 +118,7 @@ TEST_CASE("water query: what it finds is on the surface, above the place asked f
     CHECK(evaluations < 5 * 1000);
 }
 
-TEST_CASE("water query: still water takes one look, and is level and at rest") {
+TEST_CASE("water query: still water takes one evaluation, and is level and at rest") {
     WaterSurface surface;
     surface.frame.origin.y = 2;
     const WaterPoint point = sample_water(surface, {100, -40});
@@ -128,7 +129,7 @@ TEST_CASE("water query: still water takes one look, and is level and at rest") {
     CHECK(point.evaluations == 1);
 }
 
-TEST_CASE("water query: where nothing shifts sideways a place is its own place at rest") {
+TEST_CASE("water query: without horizontal shift a position is its own rest point") {
     Sea sea;
     sea.waves.lines.clear();
     sea.add_ripples();
@@ -142,7 +143,7 @@ TEST_CASE("water query: where nothing shifts sideways a place is its own place a
     }
 }
 
-TEST_CASE("water query: normals are those of the heights around, of sharp waves too") {
+TEST_CASE("water query: normals match the surrounding heights, also of sharp waves") {
     Sea sea;
     std::mt19937 random(3);
     const float h = 0.02f;
@@ -161,7 +162,7 @@ TEST_CASE("water query: normals are those of the heights around, of sharp waves 
     }
 }
 
-TEST_CASE("water query: normals of ripples and of the ocean are those of the heights around") {
+TEST_CASE("water query: normals of ripples and of the ocean match the surrounding heights") {
     Sea sea;
     sea.waves = {};
     std::mt19937 random(4);
@@ -189,7 +190,7 @@ TEST_CASE("water query: normals of ripples and of the ocean are those of the hei
     check(0.5f, 0.05);
 }
 
-TEST_CASE("water query: at its own points the ocean is what its grids say, and it repeats") {
+TEST_CASE("water query: at its grid points the ocean has the values of its grids, and it repeats") {
     Sea sea;
     sea.waves = {};
     sea.surface.water = {};
@@ -208,13 +209,13 @@ TEST_CASE("water query: at its own points the ocean is what its grids say, and i
         const Vec2 far = cell * Vec2(point) + patch * Vec2(-3, 2);
         CHECK(glm::distance(displace_water(sea.surface, far).offset, offset) < 1e-3f);
     }
-    // Half way along an edge: the mean of its ends.
-    const Vec3 middle = displace_water(sea.surface, {cell * 63.5f, 0}).offset;
-    CHECK(middle.y == test::near(0.5f * (cascade.height[63] + cascade.height[0])));
+    // Halfway along an edge: the mean of its ends.
+    const Vec3 midpoint = displace_water(sea.surface, {cell * 63.5f, 0}).offset;
+    CHECK(midpoint.y == test::near(0.5f * (cascade.height[63] + cascade.height[0])));
 }
 
-TEST_CASE("water query: heights change as velocity and slope say") {
-    // At a place, dh/dt = v_y - v_xz . slope.
+TEST_CASE("water query: heights change by velocity and slope") {
+    // At a fixed position, dh/dt = v_y - v_xz . slope.
     const float dt = 0.01f;
     Sea sea(3.0);
     const Sea before(3.0 - static_cast<double>(dt));
@@ -232,7 +233,7 @@ TEST_CASE("water query: heights change as velocity and slope say") {
     }
 }
 
-TEST_CASE("water query: the ocean moves by what it moved in the last step") {
+TEST_CASE("water query: the velocity of the ocean is its displacement in the last step") {
     Sea now(3.0);
     Sea before(3.0 - static_cast<double>(kStep));
     for (Sea* sea : {&now, &before}) {
@@ -249,7 +250,7 @@ TEST_CASE("water query: the ocean moves by what it moved in the last step") {
     }
 }
 
-TEST_CASE("water query: the sharpest waves there are, cusps, are found everywhere") {
+TEST_CASE("water query: it converges everywhere on the sharpest waves, cusps") {
     WaterSurface surface;
     WaveTable waves;
     const float length = 10;
@@ -272,7 +273,7 @@ TEST_CASE("water query: the sharpest waves there are, cusps, are found everywher
     CHECK(most <= 20);
 }
 
-TEST_CASE("water query: of folded water it finds a point that is there") {
+TEST_CASE("water query: on folded water it finds one of the solutions") {
     Sea sea;
     sea.sea = {.wind_speed = 25, .choppiness = 4, .cascades = 3, .patch = 100, .resolution = 64};
     sea.add_ocean();
@@ -288,7 +289,7 @@ TEST_CASE("water query: of folded water it finds a point that is there") {
     CHECK(found > 450);
 }
 
-TEST_CASE("water query: beyond the edge, and nowhere in particular, there is no water") {
+TEST_CASE("water query: beyond the edge, and at NaN positions, there is no water") {
     const Sea sea;
     const auto at = [&](float x, float z) {
         const Vec3 world = sea.surface.frame.world({x, 0, z});
@@ -313,7 +314,7 @@ TEST_CASE("water query: beyond the edge, and nowhere in particular, there is no 
     CHECK(height_at(open, {1.5f, 0}) == 0);
 }
 
-TEST_CASE("water query: many places at once are the same, on any number of threads") {
+TEST_CASE("water query: many positions at once give the same results, on any number of threads") {
     Sea sea;
     sea.add_ripples();
     sea.add_ocean();
@@ -361,7 +362,7 @@ TEST_CASE("water query: a point is in the water whose surface is nearest above i
     CHECK(water_bottom(low) < -1e30f);
 }
 
-TEST_CASE("water query: what is too large for short waves may leave them out") {
+TEST_CASE("water query: waves shorter than a given length can be omitted") {
     Sea sea;
     sea.surface.min_wavelength = 6;
     const WaveTable all = sea.waves;
@@ -376,7 +377,7 @@ TEST_CASE("water query: what is too large for short waves may leave them out") {
     CHECK(displace_water(sea.surface, {1, 2}).offset == evaluate_waves(all, {1, 2}).offset);
 }
 
-TEST_CASE("water query: a ray meets the water where both are") {
+TEST_CASE("water query: a ray hits the water at a point on both") {
     Sea sea;
     sea.add_ripples();
     std::mt19937 random(9);

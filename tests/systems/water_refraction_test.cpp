@@ -39,7 +39,7 @@ float slope_of(float z) {
 }  // namespace
 
 TEST_CASE(
-    "water refraction: over shallow water waves of one period are slower and shorter"
+    "water refraction: over shallow water, waves of one period are slower and shorter"
     * technique("water.shallow-refraction")) {
     struct Case {
         double depth;
@@ -62,7 +62,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water refraction: crests turn toward the shore as Snell says"
+    "water refraction: crests turn toward the shore by Snell's law"
     * technique("water.shallow-refraction")) {
     CHECK(std::abs(degrees(snell_angle(radians(45), 1000, 1, kPeriod)) - 16.03f) < 0.005f);
     CHECK(
@@ -75,9 +75,9 @@ TEST_CASE(
     const std::vector<Vec2> ray = trace_wave_ray(grid, kPeriod, {20, 0}, from, 400, 0.5f);
     REQUIRE(ray.size() > 100);
     for (std::size_t i = 1; i + 1 < ray.size(); i += 20) {
-        const Vec2 way = ray[i + 1] - ray[i - 1];
+        const Vec2 chord = ray[i + 1] - ray[i - 1];
         const float expected = snell_angle(radians(45), 40, slope_of(ray[i].y), kPeriod);
-        CHECK(std::abs(std::atan2(way.x, way.y) - expected) < radians(0.3f));
+        CHECK(std::abs(std::atan2(chord.x, chord.y) - expected) < radians(0.3f));
     }
     const Vec2 last = ray[ray.size() - 1] - ray[ray.size() - 2];
     CHECK(degrees(std::atan2(last.x, last.y)) == test::near(16.03).epsilon(0.02).scale(0));
@@ -113,7 +113,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water refraction: over an even bottom a train stays plane, whichever way it runs"
+    "water refraction: over an even bottom a train stays plane, in any direction"
     * technique("water.shallow-refraction")) {
     const DepthGrid grid = beach(31, 24, 2, [](float) { return 8.0f; });
     const float k = number_at(8);

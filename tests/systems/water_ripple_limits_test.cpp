@@ -21,7 +21,7 @@ namespace limn::water_ripple_limits_test {
 
 using namespace test;
 
-TEST_CASE("water ripples: steps of any length, none, backward or not a number") {
+TEST_CASE("water ripples: steps of any length, 0, negative or NaN are safe") {
     const float inf = std::numeric_limits<float>::infinity();
     for (const float damping : {0.0f, 0.4f, 100.0f}) {
         for (const float speed : {0.0f, 0.01f, 1.2f, 1000.0f}) {
@@ -35,7 +35,7 @@ TEST_CASE("water ripples: steps of any length, none, backward or not a number") 
                 step_ripples(state, ripples, step);
                 step_ripples(state, ripples, step);
                 CAPTURE(step);
-                CHECK(reach(state) < 1);
+                CHECK(max_height(state) < 1);
                 CHECK(std::isfinite(sample_ripples(state, {0, 0}).velocity));
             }
             const std::vector<float> before = state.height;
@@ -49,7 +49,7 @@ TEST_CASE("water ripples: steps of any length, none, backward or not a number") 
     }
 }
 
-TEST_CASE("water ripples: a step of another length changes nothing of how waves move") {
+TEST_CASE("water ripples: the motion of waves does not depend on the step length") {
     const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0};
     RippleState even = make_ripples(pool(3, 0.5f), ripples, kStep);
     fill_standing_wave(even, 0.1f);
@@ -81,7 +81,7 @@ TEST_CASE("water ripples: a step of another length changes nothing of how waves 
     }
 }
 
-TEST_CASE("water ripples: cells of any size, and water of none or of negative depth") {
+TEST_CASE("water ripples: cells of any size, and water of zero or negative depth are safe") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float cell : {0.0f, -1.0f, nan}) {
         CHECK(make_ripples(pool(4, 3), {.cell = cell}, kStep).cells == IVec2(0));
@@ -102,14 +102,14 @@ TEST_CASE("water ripples: cells of any size, and water of none or of negative de
     for (int i = 0; i < 30; ++i) {
         step_world(world, schedule);
     }
-    CHECK(reach(world.get<RippleState>(deep)) < 10);
+    CHECK(max_height(world.get<RippleState>(deep)) < 10);
     CHECK(world.get<RippleState>(none).cells == IVec2(0));
     for (const WaveLine& line : world.get<WaveTable>(deep).lines) {
         CHECK(std::isfinite(line.frequency));
     }
 }
 
-TEST_CASE("water ripples: a hundred thousand impulses as wide as the pool end in their time") {
+TEST_CASE("water ripples: of a hundred thousand impulses as wide as the pool, most are dropped") {
     RippleState state = make_ripples(pool(10, 10), {}, kStep);
     for (int i = 0; i < 100000; ++i) {
         state.impulses.push_back({.radius = 1e9f, .height = 1e-4f});
@@ -118,7 +118,7 @@ TEST_CASE("water ripples: a hundred thousand impulses as wide as the pool end in
     CHECK(state.impulses.empty());
     CHECK(state.dropped > 99000);
     CHECK(state.dropped < 100000);
-    CHECK(reach(state) < 10);
+    CHECK(max_height(state) < 10);
     // As many drops are none too many.
     RippleState rained = make_ripples(pool(10, 10), {}, kStep);
     for (int i = 0; i < 100000; ++i) {
@@ -130,7 +130,7 @@ TEST_CASE("water ripples: a hundred thousand impulses as wide as the pool end in
     CHECK(rained.dropped == 0);
 }
 
-TEST_CASE("water ripples: too quick, too many, too small, not a number: never NaN") {
+TEST_CASE("water ripples: too fast, too many, too small, or NaN input never gives NaN") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     // A step that no grid can take is taken in pieces; waves that are quicker still are slowed.
     for (const float speed : {0.0f, 40.0f, 1000.0f, nan}) {
@@ -138,7 +138,7 @@ TEST_CASE("water ripples: too quick, too many, too small, not a number: never Na
         RippleState state = make_ripples(pool(2, 2), ripples, kStep);
         push_ripples(state, {.radius = 0.3f, .height = 0.5f});
         run(state, ripples, 300);
-        CHECK(reach(state) < 2);
+        CHECK(max_height(state) < 2);
         CHECK(state.substeps <= kMaxRippleSubsteps);
     }
     const WaterRipples calm;
@@ -149,21 +149,21 @@ TEST_CASE("water ripples: too quick, too many, too small, not a number: never Na
           RippleImpulse{.center = {1e30f, 0}}}) {
         push_ripples(state, bad);
     }
-    CHECK(reach(state) == 0);
+    CHECK(max_height(state) == 0);
     push_ripples(state, {.radius = -1, .height = 0.1f});
     push_ripples(state, {.radius = 1e20f, .height = 0.1f});
     push_ripples(state, {.radius = 0.2f, .height = 1e20f});
     step_ripples(state, calm, nan);
     step_ripples(state, calm, -1);
     run(state, calm, 10);
-    CHECK(reach(state) < 100);
+    CHECK(max_height(state) < 100);
     // A body of no size, or of any, does no harm.
     displace_ripples(
         state, std::vector<WaterBulge>{
                    {.radius = {0, 0}, .volume = 0.1f},
                    {.radius = {nan, 1}, .volume = 1},
                    {.volume = nan}});
-    CHECK(std::isfinite(reach(state)));
+    CHECK(std::isfinite(max_height(state)));
     // A hundred thousand impulses in one step.
     for (int i = 0; i < 100000; ++i) {
         const float a = static_cast<float>(i);
@@ -172,10 +172,10 @@ TEST_CASE("water ripples: too quick, too many, too small, not a number: never Na
     }
     run(state, calm, 2);
     CHECK(state.impulses.empty());
-    CHECK(reach(state) < 1000);
+    CHECK(max_height(state) < 1000);
 }
 
-TEST_CASE("water ripples: a hundred pools are a hundred times one, to the bit") {
+TEST_CASE("water ripples: a hundred pools are bit-identical to one, a hundred times") {
     World world;
     Schedule schedule = make_world_schedule();
     std::vector<Entity> pools;
@@ -184,17 +184,19 @@ TEST_CASE("water ripples: a hundred pools are a hundred times one, to the bit") 
     const RippleImpulse splash = {.center = {0.1f, 0.1f}, .radius = 0.5f, .height = -0.1f};
     for (int i = 0; i < 100; ++i) {
         const float size = 1.5f + 0.03f * static_cast<float>(i);
-        const Vec3 place = {
+        const Vec3 position = {
             8.0f * static_cast<float>(i % 10), 0, 15.0f * static_cast<float>(i / 10)};
-        pools.push_back(world.create(Transform{.position = place}, pool(size, 2 * size), ripples));
+        pools.push_back(
+            world.create(Transform{.position = position}, pool(size, 2 * size), ripples));
         if (i % 3 == 0) {
             world.create(
-                Transform{.position = place + Vec3(0.2f, -0.3f, 0)},
+                Transform{.position = position + Vec3(0.2f, -0.3f, 0)},
                 WaterTouch{.half = Vec3(0.2f)});
         }
         if (i % 4 == 0) {
             world.create(
-                Transform{.position = place + Vec3(-0.4f, 0, 0.3f)}, WaterWall{.half = Vec3(0.2f)});
+                Transform{.position = position + Vec3(-0.4f, 0, 0.3f)},
+                WaterWall{.half = Vec3(0.2f)});
         }
     }
     for (const Entity entity : pools) {
@@ -219,21 +221,22 @@ TEST_CASE("water ripples: a hundred pools are a hundred times one, to the bit") 
             run(alone[i], ripples, 20);
             CHECK(state.height == alone[i].height);
         }
-        CHECK(reach(state) > 0);
+        CHECK(max_height(state) > 0);
     }
 }
 
-TEST_CASE("water ripples: pools at work ask for no memory, however many there are") {
+TEST_CASE("water ripples: stepping allocates no memory, with any number of pools") {
     World world;
     Schedule schedule;
     schedule.add<update_water_ripples>();
     for (int i = 0; i < 100; ++i) {
-        const Vec3 place = {6.0f * static_cast<float>(i), 0, 0};
+        const Vec3 position = {6.0f * static_cast<float>(i), 0, 0};
         const float size = 1 + 0.03f * static_cast<float>(i);
         world.create(
-            Transform{.position = place}, pool(size, size), WaterRipples{.cell = 0.1f, .rain = 5});
-        world.create(Transform{.position = place + Vec3(0, -0.3f, 0)}, WaterTouch{});
-        world.create(Transform{.position = place + Vec3(0.3f, 0, 0)}, WaterWall{});
+            Transform{.position = position}, pool(size, size),
+            WaterRipples{.cell = 0.1f, .rain = 5});
+        world.create(Transform{.position = position + Vec3(0, -0.3f, 0)}, WaterTouch{});
+        world.create(Transform{.position = position + Vec3(0.3f, 0, 0)}, WaterWall{});
     }
     start_world(world);
     set_thread_count(1);

@@ -18,7 +18,7 @@ inline Water pool(float width, float length) {
 }
 
 /// Largest height, up or down; not a number if one is none.
-inline float reach(const RippleState& state) {
+inline float max_height(const RippleState& state) {
     float most = 0;
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {

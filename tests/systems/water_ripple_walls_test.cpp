@@ -27,16 +27,16 @@ Affine at(const Vec3& position, float turn = 0) {
     return affine_from(position, glm::angleAxis(turn, Vec3(0, 1, 0)), Vec3(1));
 }
 
-PlacedWall box(const RippleState& state, const Vec3& half, const Affine& place) {
-    const auto wall = place_wall({.half = half}, place, {}, 0, state.size());
+PlacedWall box(const RippleState& state, const Vec3& half, const Affine& index_of) {
+    const auto wall = place_wall({.half = half}, index_of, {}, 0, state.size());
     REQUIRE(wall.has_value());
     return *wall;
 }
 
-PlacedWall column(const RippleState& state, float radius, const Vec2& place) {
+PlacedWall column(const RippleState& state, float radius, const Vec2& index_of) {
     const auto wall = place_wall(
-        {.shape = WallShape::Cylinder, .half = {radius, 2, radius}}, at({place.x, 0, place.y}), {},
-        0, state.size());
+        {.shape = WallShape::Cylinder, .half = {radius, 2, radius}},
+        at({index_of.x, 0, index_of.y}), {}, 0, state.size());
     REQUIRE(wall.has_value());
     return *wall;
 }
@@ -55,16 +55,17 @@ void run(RippleState& state, const WaterRipples& ripples, int steps) {
     }
 }
 
-Vec2 middle(const RippleState& state, int x, int z) {
+Vec2 cell_position(const RippleState& state, int x, int z) {
     return state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
 }
 
 /// Largest height, up or down, of the water where `where` holds.
-float reach(const RippleState& state, const std::function<bool(const Vec2&)>& where) {
+float max_height(const RippleState& state, const std::function<bool(const Vec2&)>& where) {
     float most = 0;
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
-            if (where(middle(state, x, z)) && (state.dry.empty() || !state.dry[state.at(x, z)])) {
+            if (where(cell_position(state, x, z))
+                && (state.dry.empty() || !state.dry[state.at(x, z)])) {
                 const float height = std::abs(state.height[state.at(x, z)]);
                 if (std::isnan(height)) {
                     return height;
@@ -80,7 +81,7 @@ float reach(const RippleState& state, const std::function<bool(const Vec2&)>& wh
 void start_pulse(RippleState& state, float x, float speed) {
     for (int z = 0; z < state.cells.y; ++z) {
         for (int i = 0; i < state.cells.x; ++i) {
-            const float from = middle(state, i, z).x - x;
+            const float from = cell_position(state, i, z).x - x;
             const float ago = from + speed * state.substep;
             state.height[state.at(i, z)] = 0.1f * std::exp(-square(from / 0.25f));
             state.previous[state.at(i, z)] = 0.1f * std::exp(-square(ago / 0.25f));
@@ -99,11 +100,11 @@ class Reference {
         factor_ = static_cast<double>(courant) * courant / 6;
         for (int z = -1; z <= size_.y; ++z) {
             for (int x = -1; x <= size_.x; ++x) {
-                const std::size_t place = state.at(x, z);
+                const std::size_t index_of = state.at(x, z);
                 const bool on = x >= 0 && z >= 0 && x < size_.x && z < size_.y;
-                wet_.push_back(on && (state.dry.empty() || state.dry[place] == 0));
-                now_.push_back(wet_.back() ? state.height[place] : 0);
-                before_.push_back(wet_.back() ? state.previous[place] : 0);
+                wet_.push_back(on && (state.dry.empty() || state.dry[index_of] == 0));
+                now_.push_back(wet_.back() ? state.height[index_of] : 0);
+                before_.push_back(wet_.back() ? state.previous[index_of] : 0);
             }
         }
     }
@@ -133,10 +134,10 @@ class Reference {
         return sum;
     }
 
-    [[nodiscard]] double height(int x, int z) const { return now_[place(x, z)]; }
+    [[nodiscard]] double height(int x, int z) const { return now_[index_of(x, z)]; }
 
   private:
-    [[nodiscard]] std::size_t place(int x, int z) const {
+    [[nodiscard]] std::size_t index_of(int x, int z) const {
         return static_cast<std::size_t>((z + 1) * (size_.x + 2) + x + 1);
     }
 
@@ -144,10 +145,10 @@ class Reference {
     void each_exchange(Body&& body) const {
         for (int z = -1; z < size_.y; ++z) {
             for (int x = -1; x < size_.x; ++x) {
-                const std::size_t a = place(x, z);
-                const std::size_t b = place(x + 1, z);
-                const std::size_t c = place(x, z + 1);
-                const std::size_t d = place(x + 1, z + 1);
+                const std::size_t a = index_of(x, z);
+                const std::size_t b = index_of(x + 1, z);
+                const std::size_t c = index_of(x, z + 1);
+                const std::size_t d = index_of(x + 1, z + 1);
                 const auto edge = [&](std::size_t p, std::size_t q, double weight) {
                     if (wet_[p] && wet_[q]) {
                         body(p, q, weight);
@@ -186,7 +187,7 @@ std::vector<PlacedWall> maze(const RippleState& state) {
 
 }  // namespace
 
-TEST_CASE("ripple walls: a wall is as good as the end of the pool, and nothing goes through") {
+TEST_CASE("ripple walls: a wall acts like the border of the pool, and nothing passes through") {
     // 6 m with a wall over the last 2, against 4 m alone.
     RippleState walled = make_walled({6, 0.5f}, kUndamped, [](const RippleState& state) {
         return std::vector<PlacedWall>{box(state, {1, 1, 1}, at({2, 0, 0}))};
@@ -204,25 +205,25 @@ TEST_CASE("ripple walls: a wall is as good as the end of the pool, and nothing g
                 CHECK(std::abs(difference) < 2e-6f);
             }
         }
-        CHECK(reach(walled, [](const Vec2& p) { return p.x > 1; }) == 0);
+        CHECK(max_height(walled, [](const Vec2& p) { return p.x > 1; }) == 0);
     }
 }
 
-TEST_CASE("ripple walls: a crest comes back as a crest, as high, from where the wall is") {
+TEST_CASE("ripple walls: a crest is reflected as a crest of equal height, at the wall's position") {
     RippleState state = make_walled({8, 0.4f}, kUndamped, [](const RippleState& made) {
         return std::vector<PlacedWall>{box(made, {0.2f, 1, 1}, at({2, 0, 0}))};
     });
     start_pulse(state, 0, kUndamped.speed);
     run(state, kUndamped, 120);  // 3 m: 1.8 there, 1.2 back
     CHECK(sample_ripples(state, {0.6f, 0}).height == test::near(0.1).epsilon(0.06).scale(0));
-    CHECK(reach(state, [](const Vec2& p) { return p.x > 2.2f; }) < 1e-6f);
+    CHECK(max_height(state, [](const Vec2& p) { return p.x > 2.2f; }) < 1e-6f);
     // Halfway, the wall is as high again as the crest.
     start_pulse(state, 0, kUndamped.speed);
     run(state, kUndamped, 72);
     CHECK(sample_ripples(state, {1.78f, 0}).height == test::near(0.2).epsilon(0.06).scale(0));
 }
 
-TEST_CASE("ripple walls: the thinnest keeps the water out, however it is turned") {
+TEST_CASE("ripple walls: the thinnest wall is tight at any rotation") {
     for (const float turn : {0.0f, 0.3f, 0.785398f, 1.1f, 1.57f}) {
         const WaterRipples ripples = {.cell = 0.05f, .speed = 2, .damping = 0};
         const Vec2 normal = {std::sin(turn), std::cos(turn)};
@@ -234,28 +235,28 @@ TEST_CASE("ripple walls: the thinnest keeps the water out, however it is turned"
         const auto side = [&](float sign) {
             return [=](const Vec2& p) { return sign * glm::dot(p, normal) > 0.1f; };
         };
-        CHECK(reach(state, side(1)) > 0.003f);
-        CHECK(reach(state, side(-1)) < 1e-6f);
+        CHECK(max_height(state, side(1)) > 0.003f);
+        CHECK(max_height(state, side(-1)) < 1e-6f);
     }
 }
 
-TEST_CASE("ripple walls: cells that meet at their corners alone are a wall") {
+TEST_CASE("ripple walls: cells that touch only at their corners form a wall") {
     RippleState state = make_walled({3, 3}, kUndamped, [](const RippleState& made) {
         std::vector<PlacedWall> stairs;
         for (int i = 0; i < made.cells.x; ++i) {
-            const Vec2 place = middle(made, i, i);
-            stairs.push_back(column(made, 0.02f, place));
+            const Vec2 index_of = cell_position(made, i, i);
+            stairs.push_back(column(made, 0.02f, index_of));
         }
         return stairs;
     });
     REQUIRE(state.wet == state.cells.x * state.cells.y - state.cells.x);
     push_ripples(state, {.center = {0.8f, -0.8f}, .radius = 0.5f, .height = 0.2f});
     run(state, kUndamped, 300);
-    CHECK(reach(state, [](const Vec2& p) { return p.x > p.y; }) > 0.01f);
-    CHECK(reach(state, [](const Vec2& p) { return p.x < p.y; }) < 1e-6f);
+    CHECK(max_height(state, [](const Vec2& p) { return p.x > p.y; }) > 0.01f);
+    CHECK(max_height(state, [](const Vec2& p) { return p.x < p.y; }) < 1e-6f);
 }
 
-TEST_CASE("ripple walls: inside of them nothing moves") {
+TEST_CASE("ripple walls: inside them nothing moves") {
     RippleState state = make_walled({4, 3}, kUndamped, [](const RippleState& made) {
         return std::vector<PlacedWall>{box(made, {0.8f, 1, 0.8f}, at({0, 0, 0}))};
     });
@@ -265,7 +266,7 @@ TEST_CASE("ripple walls: inside of them nothing moves") {
         float most = 0;
         for (int z = 0; z < state.cells.y; ++z) {
             for (int x = 0; x < state.cells.x; ++x) {
-                const Vec2 p = glm::abs(middle(state, x, z));
+                const Vec2 p = glm::abs(cell_position(state, x, z));
                 if (std::max(p.x, p.y) < 0.65f) {
                     most = std::max(most, std::abs(state.height[state.at(x, z)]));
                 }
@@ -275,7 +276,7 @@ TEST_CASE("ripple walls: inside of them nothing moves") {
     }
 }
 
-TEST_CASE("ripple walls: cells exchange as the squares of four say, in double precision") {
+TEST_CASE("ripple walls: exchanges match the sum over squares of four cells, in double precision") {
     RippleState state = make_walled({4, 3}, kUndamped, maze);
     REQUIRE(state.wet < state.cells.x * state.cells.y);
     push_ripples(state, {.center = {-0.2f, 0.3f}, .radius = 0.5f, .height = 0.2f});
@@ -295,7 +296,7 @@ TEST_CASE("ripple walls: cells exchange as the squares of four say, in double pr
     }
 }
 
-TEST_CASE("ripple walls: between them waves neither grow nor die") {
+TEST_CASE("ripple walls: between them waves neither grow nor decay") {
     RippleState state = make_walled({4, 3}, kUndamped, maze);
     push_ripples(state, {.center = {-0.2f, 0.3f}, .radius = 0.5f, .height = 0.2f});
     const double energy = Reference(state, kUndamped).energy();
@@ -305,7 +306,7 @@ TEST_CASE("ripple walls: between them waves neither grow nor die") {
     }
 }
 
-TEST_CASE("ripple walls: a step keeps the volume to a millionth of what is moved") {
+TEST_CASE("ripple walls: a step conserves volume to a millionth of what moves") {
     RippleState state = make_walled({4, 3}, {}, maze);
     push_ripples(state, {.center = {-0.2f, 0.3f}, .radius = 0.5f, .height = 0.2f});
     double moved = 0;
@@ -321,7 +322,7 @@ TEST_CASE("ripple walls: a step keeps the volume to a millionth of what is moved
     CHECK(std::abs(ripple_volume(state)) < 1e-5 * moved);
 }
 
-TEST_CASE("ripple walls: what is the same on both sides stays so") {
+TEST_CASE("ripple walls: symmetry is preserved") {
     RippleState state = make_walled({4.05f, 4.05f}, kUndamped, [](const RippleState& made) {
         return std::vector<PlacedWall>{column(made, 0.4f, {0, 0}), column(made, 0.2f, {0, 1.2f})};
     });
@@ -336,7 +337,7 @@ TEST_CASE("ripple walls: what is the same on both sides stays so") {
     }
 }
 
-TEST_CASE("ripple walls: a ring bends around a column, and is lower behind it") {
+TEST_CASE("ripple walls: a ring diffracts around a column, and is lower behind it") {
     float behind[2] = {};
     float early[2] = {};
     for (const bool stands : {false, true}) {
@@ -358,10 +359,10 @@ TEST_CASE("ripple walls: a ring bends around a column, and is lower behind it") 
     CHECK(early[1] < 0.4f * early[0]);
 }
 
-TEST_CASE("ripple walls: their section with the rest surface counts, whatever their shape") {
-    const auto dry_area = [](const WaterWall& wall, const Affine& place) {
+TEST_CASE("ripple walls: their section with the rest surface counts, for any shape") {
+    const auto dry_area = [](const WaterWall& wall, const Affine& index_of) {
         RippleState state = make_ripples({.size = {4, 4}}, {.cell = 0.02f}, kStep);
-        const auto placed = place_wall(wall, place, {}, 0, state.size());
+        const auto placed = place_wall(wall, index_of, {}, 0, state.size());
         if (placed) {
             set_ripple_walls(state, {&*placed, 1}, RippleBorder::Reflecting);
         }
@@ -387,7 +388,7 @@ TEST_CASE("ripple walls: their section with the rest surface counts, whatever th
     CHECK(dry_area(wide, at({0, 0.51f, 0})) == 0);
 }
 
-TEST_CASE("ripple walls: one that comes raises the water by its volume, one that goes lowers it") {
+TEST_CASE("ripple walls: a new wall raises the water by its volume, a removed one lowers it") {
     RippleState state = make_ripples({.size = {4, 3}, .depth = 0.8f}, {.damping = 1}, kStep);
     push_ripples(state, {.center = {0.5f, 0.2f}, .radius = 0.5f, .height = 0.1f});
     run(state, {.damping = 1}, 5);
@@ -411,7 +412,8 @@ TEST_CASE("ripple walls: one that comes raises the water by its volume, one that
     CHECK(std::abs(sample_ripples(state, {0.5f, 0.2f}).height) < 1e-3f);
 }
 
-TEST_CASE("ripple walls: whatever moves, the water stays as high as all that is in it") {
+TEST_CASE(
+    "ripple walls: with any motion, the water level matches the volume of all that is in it") {
     RippleState state = make_ripples({.size = {4, 3}, .depth = 0.8f}, {}, kStep);
     run(state, {}, 1);
     const WaterWall wall = {.half = {0.3f, 5, 0.4f}};
@@ -419,7 +421,7 @@ TEST_CASE("ripple walls: whatever moves, the water stays as high as all that is 
     const WaterBulge body = {.center = {-1, 0}, .radius = {0.4f, 0.4f}, .volume = 0.2f};
     for (const float x : {0.5f, 0.6f, 0.9f}) {
         const auto placed = place_wall(wall, at({x, 0, 0.2f}), {}, 0.8f, state.size());
-        // Two in one place are two.
+        // Two at the same position count twice.
         const PlacedWall walls[] = {*placed, *placed};
         const std::size_t standing = x == 0.6f ? 2 : 1;
         set_ripple_walls(state, {walls, standing}, RippleBorder::Reflecting);
@@ -433,7 +435,7 @@ TEST_CASE("ripple walls: whatever moves, the water stays as high as all that is 
     }
 }
 
-TEST_CASE("ripple walls: of one that is in the water by half, half makes room") {
+TEST_CASE("ripple walls: a half submerged wall displaces half of its volume") {
     RippleState state = make_ripples({.size = {4, 3}}, {}, kStep);
     run(state, {}, 1);
     const PlacedWall wall = box(state, {0.4f, 0.5f, 0.3f}, at({2, 0, 0}));
@@ -441,7 +443,7 @@ TEST_CASE("ripple walls: of one that is in the water by half, half makes room") 
     CHECK(ripple_volume(state) == test::near(0.4 * 0.5 * 0.6).epsilon(1e-5).scale(0));
 }
 
-TEST_CASE("ripple walls: one that steps aside in level water leaves it level") {
+TEST_CASE("ripple walls: a wall that moves in level water leaves it level") {
     RippleState state = make_ripples({.size = {4, 3}}, {}, kStep);
     run(state, {}, 1);
     const auto stand = [&](float x) {
@@ -461,16 +463,17 @@ TEST_CASE("ripple walls: one that steps aside in level water leaves it level") {
     float worst = 0;
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
-            const std::size_t place = state.at(x, z);
+            const std::size_t index_of = state.at(x, z);
             const float off = std::max(
-                std::abs(state.height[place] - 0.05f), std::abs(state.previous[place] - 0.05f));
-            worst = is_dry(state, place) ? worst : std::max(worst, off);
+                std::abs(state.height[index_of] - 0.05f),
+                std::abs(state.previous[index_of] - 0.05f));
+            worst = is_dry(state, index_of) ? worst : std::max(worst, off);
         }
     }
     CHECK(worst < 1e-5f);
 }
 
-TEST_CASE("ripple walls: one that moves makes waves and no water, bodies beside it or not") {
+TEST_CASE("ripple walls: a moving wall makes waves and conserves volume, with bodies or without") {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity pool = world.create(
@@ -481,23 +484,23 @@ TEST_CASE("ripple walls: one that moves makes waves and no water, bodies beside 
     world.create(Transform{.position = {-1, 0, 0.5f}}, WaterWall{.half = {0.2f, 2, 0.3f}});
     const double ball = 4.0 / 3.0 * 3.14159265 * 0.008;
     for (int i = 0; i < 240; ++i) {
-        Transform& place = world.get<Transform>(pier);
-        place.position.x = 0.6f * std::sin(0.02f * static_cast<float>(i));
-        place.rotation = glm::angleAxis(0.01f * static_cast<float>(i), Vec3(0, 1, 0));
+        Transform& index_of = world.get<Transform>(pier);
+        index_of.position.x = 0.6f * std::sin(0.02f * static_cast<float>(i));
+        index_of.rotation = glm::angleAxis(0.01f * static_cast<float>(i), Vec3(0, 1, 0));
         step_world(world, schedule);
         CHECK(
             ripple_volume(world.get<RippleState>(pool)) == test::near(ball).epsilon(1e-4).scale(0));
     }
     const RippleState& state = world.get<RippleState>(pool);
-    CHECK(reach(state, [](const Vec2&) { return true; }) > 0.01f);
-    CHECK(reach(state, [](const Vec2&) { return true; }) < 0.5f);
+    CHECK(max_height(state, [](const Vec2&) { return true; }) > 0.01f);
+    CHECK(max_height(state, [](const Vec2&) { return true; }) < 0.5f);
     world.destroy(stone);
     world.destroy(pier);
     step_world(world, schedule);
     CHECK(ripple_volume(state) == test::near(-0.4 * 0.6 * 0.3).epsilon(1e-4).scale(0));
 }
 
-TEST_CASE("ripple walls: what walls need is made anew only when one has moved") {
+TEST_CASE("ripple walls: the corrections are rebuilt only when a wall has moved") {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity pool = world.create(Transform{}, Water{.size = {4, 3}}, WaterRipples{.rain = 20});
@@ -516,7 +519,7 @@ TEST_CASE("ripple walls: what walls need is made anew only when one has moved") 
     CHECK(state.faces[0].weight == weight);
 }
 
-TEST_CASE("ripple walls: the same for every number of threads") {
+TEST_CASE("ripple walls: results are the same for any number of threads") {
     std::vector<float> first;
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
@@ -529,7 +532,7 @@ TEST_CASE("ripple walls: the same for every number of threads") {
     set_thread_count(2);
 }
 
-TEST_CASE("ripple walls: a long one whose middle is far away reaches in") {
+TEST_CASE("ripple walls: a long wall with its center outside the field extends into it") {
     for (const bool turned : {false, true}) {
         World world;
         Schedule schedule = make_world_schedule();
@@ -548,7 +551,7 @@ TEST_CASE("ripple walls: a long one whose middle is far away reaches in") {
     }
 }
 
-TEST_CASE("ripple walls: a snapshot goes on as the world does") {
+TEST_CASE("ripple walls: a snapshot continues like the world") {
     register_all_components();
     Schedule schedule = make_world_schedule();
     World world;
@@ -589,7 +592,7 @@ TEST_CASE("ripple walls: a snapshot goes on as the world does") {
     }
 }
 
-TEST_CASE("ripple walls: before one the water is as high as beside it, for who asks") {
+TEST_CASE("ripple walls: sampled at a wall, the water is level with that next to it") {
     RippleState state = make_walled({4, 3}, kUndamped, [](const RippleState& made) {
         return std::vector<PlacedWall>{box(made, {0.5f, 1, 0.5f}, at({0, 0, 0}))};
     });
@@ -610,10 +613,11 @@ TEST_CASE("ripple walls: before one the water is as high as beside it, for who a
     // What falls onto the wall makes no rings.
     push_ripples(state, {.center = {0, 0}, .radius = 2, .height = 0.3f});
     CHECK(
-        reach(state, [](const Vec2&) { return true; }) == test::near(0.05).epsilon(1e-4).scale(0));
+        max_height(state, [](const Vec2&) { return true; })
+        == test::near(0.05).epsilon(1e-4).scale(0));
 }
 
-TEST_CASE("ripple walls: one that is nowhere, flat or not finite is none; one may be everywhere") {
+TEST_CASE("ripple walls: invalid or flat walls are ignored; a wall may cover the whole field") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Vec2 extent = {4, 3};
     CHECK(!place_wall({}, at({nan, 0, 0}), {}, 1, extent));
@@ -644,7 +648,7 @@ TEST_CASE("ripple walls: one that is nowhere, flat or not finite is none; one ma
     step(40);
     CHECK(state.wet == state.cells.x * state.cells.y);
     CHECK(std::abs(ripple_volume(state)) < 1e-5);
-    CHECK(reach(state, [](const Vec2&) { return true; }) < 0.2f);
+    CHECK(max_height(state, [](const Vec2&) { return true; }) < 0.2f);
     world.get<Transform>(block).position.x = nan;
     step(5);
     CHECK(std::isfinite(ripple_volume(state)));

@@ -58,7 +58,7 @@ TEST_CASE("water ripples: the grid covers the water, and stays within its limit"
     }
 }
 
-TEST_CASE("water ripples: vectors and plain code give the same bits") {
+TEST_CASE("water ripples: SIMD and scalar code are bit-identical") {
     for (const std::size_t width : {1u, 7u, 16u, 61u, 128u}) {
         std::vector<float> rows[3];
         std::vector<float> keep(width);
@@ -80,18 +80,18 @@ TEST_CASE("water ripples: vectors and plain code give the same bits") {
     }
 }
 
-TEST_CASE("water ripples: what falls in makes no water and takes none, in corners neither") {
+TEST_CASE("water ripples: impulses conserve volume, also in corners") {
     RippleState state = make_ripples(pool(4, 3), {}, kStep);
     for (const Vec2 at : {Vec2(0, 0), Vec2(1.97f, -1.47f), Vec2(0.013f, 1.5f)}) {
         push_ripples(state, {.center = at, .radius = 0.4f, .height = -0.1f});
         CHECK(std::abs(ripple_volume(state)) < 1e-7);
     }
     CHECK(sample_ripples(state, {0, 0}).height == test::near(-0.1).epsilon(0.05).scale(0));
-    CHECK(reach(state) < 0.2f);
+    CHECK(max_height(state) < 0.2f);
 }
 
 TEST_CASE(
-    "water ripples: a step keeps the volume to a millionth of what is moved"
+    "water ripples: a step conserves volume to a millionth of what moves"
     * technique("water.ripple-grid")) {
     RippleState state = make_ripples(pool(4, 3), {}, kStep);
     push_ripples(state, {.center = {0.7f, -0.4f}, .radius = 0.5f, .height = 0.2f});
@@ -108,7 +108,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water ripples: a standing wave swings with the period of its length and speed"
+    "water ripples: a standing wave has the period given by its length and speed"
     * technique("water.ripple-grid")) {
     // Half a wave between the walls: period 2 L / c.
     const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0};
@@ -126,9 +126,9 @@ TEST_CASE(
     CHECK(level.velocity == test::near(-0.0994 * kPi / 2).epsilon(0.02).scale(0));
 }
 
-TEST_CASE("water ripples: they fade as their damping says, and swing a little slower") {
+TEST_CASE("water ripples: they decay by their damping, and oscillate slightly slower") {
     const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0.5f};
-    const float start = 0.1f * std::cos(kPi / 120);  // at the middle of the outermost cell
+    const float start = 0.1f * std::cos(kPi / 120);  // at the center of the outermost cell
     for (const int steps : {60, 120, 240}) {
         RippleState state = make_ripples(pool(3, 0.5f), ripples, kStep);
         fill_standing_wave(state, 0.1f);
@@ -144,10 +144,10 @@ TEST_CASE("water ripples: they fade as their damping says, and swing a little sl
 }
 
 TEST_CASE(
-    "water ripples: rings are round, and go at their speed" * technique("water.ripple-grid")) {
+    "water ripples: rings are round, and run at their speed" * technique("water.ripple-grid")) {
     const WaterRipples ripples = {.cell = 0.04f, .speed = 1, .damping = 0};
     RippleState state = make_ripples(pool(6, 6), ripples, kStep);
-    // Of odd size: the middle of a cell.
+    // Of odd size: the center of a cell.
     state = make_ripples(pool(6.04f, 6.04f), ripples, kStep);
     push_ripples(state, {.center = {0, 0}, .radius = 0.6f, .height = 0.1f});
     run(state, ripples, 120);  // 2 s: the ring is 2 m out
@@ -171,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water ripples: walls send waves back, open borders let them go"
+    "water ripples: reflecting borders reflect waves, open ones absorb them"
     * technique("water.ripple-grid")) {
     float left[2] = {};
     for (const RippleBorder border : {RippleBorder::Reflecting, RippleBorder::Absorbing}) {
@@ -179,22 +179,22 @@ TEST_CASE(
         RippleState state = make_ripples(pool(4, 4), ripples, kStep);
         push_ripples(state, {.center = {0.5f, 0.3f}, .radius = 0.6f, .height = -0.1f});
         run(state, ripples, 300);  // 5 s: the ring has long met every border
-        left[static_cast<int>(border)] = reach(state);
+        left[static_cast<int>(border)] = max_height(state);
     }
     CHECK(left[0] > 0.01f);
     CHECK(left[1] < 0.05f * left[0]);
 }
 
-TEST_CASE("water ripples: less than a twentieth of a crest comes back from open borders") {
+TEST_CASE("water ripples: open borders reflect less than a twentieth of a crest") {
     const WaterRipples ripples = {
         .cell = 0.05f, .speed = 1.5f, .damping = 0, .border = RippleBorder::Absorbing};
     RippleState state = make_ripples(pool(8, 8), ripples, kStep);
     push_ripples(state, {.radius = 1, .height = 0.1f});
     run(state, ripples, 130);  // 3.3 m: before it is at the borders
-    const float crest = reach(state);
+    const float crest = max_height(state);
     run(state, ripples, 170);  // beyond the corners
     CHECK(crest > 0.005f);
-    CHECK(reach(state) < 0.04f * crest);
+    CHECK(max_height(state) < 0.04f * crest);
 }
 
 TEST_CASE("water ripples: a stone on the ground raises the water by its volume over the area") {
@@ -209,7 +209,7 @@ TEST_CASE("water ripples: a stone on the ground raises the water by its volume o
         == test::near(level).epsilon(0.1).scale(0));
 }
 
-TEST_CASE("water ripples: what leaves the water takes its room along, what ends does too") {
+TEST_CASE("water ripples: a body that leaves the water, or is destroyed, lowers the level") {
     for (const bool ends : {false, true}) {
         Pond pond({.damping = 1});
         const Entity stone = pond.world.create(
@@ -227,11 +227,11 @@ TEST_CASE("water ripples: what leaves the water takes its room along, what ends 
         pond.run(2);
         CHECK(std::abs(ripple_volume(pond.state())) < 1e-5);
         CHECK(pond.state().body.empty());
-        CHECK(reach(pond.state()) > 0.01f);
+        CHECK(max_height(pond.state()) > 0.01f);
     }
 }
 
-TEST_CASE("water ripples: a body slower than its waves carries a hollow, a quicker one a hill") {
+TEST_CASE("water ripples: a body slower than its waves carries a trough, a faster one a crest") {
     // h = U^2 / (U^2 - c^2) of what it pushes up, in one dimension (Lamb 1932, 175).
     for (const bool quick : {false, true}) {
         const float speed = quick ? 2.4f : 0.8f;
@@ -251,7 +251,7 @@ TEST_CASE("water ripples: a body slower than its waves carries a hollow, a quick
     }
 }
 
-TEST_CASE("water ripples: the water's heading and place are the body's frame") {
+TEST_CASE("water ripples: bodies are transformed by the water's rotation and position") {
     Pond pond({}, pool(4, 2));
     pond.world.get<Transform>(pond.entity) = {
         .position = {10, 5, -3}, .rotation = glm::angleAxis(radians(90), Vec3(0, 1, 0))};
@@ -261,21 +261,21 @@ TEST_CASE("water ripples: the water's heading and place are the body's frame") {
     const RippleState& state = pond.state();
     CHECK(state.level > 0);
     const float* const most = &*std::max_element(state.body.begin(), state.body.end());
-    const auto place = static_cast<std::size_t>(most - state.body.data());
+    const auto index = static_cast<std::size_t>(most - state.body.data());
     const auto stride = static_cast<std::size_t>(state.stride);
     const Vec2 at =
-        state.cell * (Vec2(place % stride, place / stride) - 0.5f - 0.5f * Vec2(state.cells));
+        state.cell * (Vec2(index % stride, index / stride) - 0.5f - 0.5f * Vec2(state.cells));
     CHECK(at.x == test::near(1.5).epsilon(0.04).scale(0));
     CHECK(at.y == test::near(0.2).epsilon(0.2).scale(0));
 }
 
-TEST_CASE("water ripples: rain falls as often as it should, the same for every number of threads") {
+TEST_CASE("water ripples: rain falls at its rate, the same for any number of threads") {
     std::vector<float> first;
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         Pond pond({.rain = 20, .rain_height = 0.02f});
         pond.run(120);
-        CHECK(reach(pond.state()) > 0.002f);
+        CHECK(max_height(pond.state()) > 0.002f);
         CHECK(std::abs(ripple_volume(pond.state())) < 1e-5);
         if (first.empty()) {
             first = pond.state().height;
@@ -285,7 +285,7 @@ TEST_CASE("water ripples: rain falls as often as it should, the same for every n
     set_thread_count(2);
 }
 
-TEST_CASE("water ripples: as many drops fall as it rains, everywhere, in each pool others") {
+TEST_CASE("water ripples: drops match the rain rate, are uniform, and differ per pool") {
     // Waves that stand still keep each drop's mark.
     World world;
     Schedule schedule = make_world_schedule();
@@ -304,10 +304,10 @@ TEST_CASE("water ripples: as many drops fall as it rains, everywhere, in each po
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
             const float square_height = square(state.height[state.at(x, z)]);
-            const Vec2 share = (Vec2(x, z) + 0.5f) / Vec2(state.cells) - 0.5f;
+            const Vec2 fraction = (Vec2(x, z) + 0.5f) / Vec2(state.cells) - 0.5f;
             marks += static_cast<double>(square_height);
             mark += static_cast<double>(square(drop.height[drop.at(x, z)]));
-            spread += square_height * share * share;
+            spread += square_height * fraction * fraction;
         }
     }
     CHECK(marks / mark == test::near(8 * 24 * 2).epsilon(0.15).scale(0));
@@ -319,22 +319,22 @@ TEST_CASE("water ripples: as many drops fall as it rains, everywhere, in each po
     CHECK(state.height != world.get<RippleState>(second).height);
 }
 
-TEST_CASE("water ripples: another size or cell begins another grid, at rest") {
+TEST_CASE("water ripples: another size or cell size gives a new grid at rest") {
     Pond pond({}, pool(2, 6));
     pond.run(1);
     push_ripples(pond.world.get<RippleState>(pond.entity), {.center = {0, 2.5f}});
     pond.run(1);
     // It has two ends, one of which is nearer.
-    CHECK(reach(pond.state()) > 0.01f);
+    CHECK(max_height(pond.state()) > 0.01f);
     push_ripples(pond.world.get<RippleState>(pond.entity), {.center = {2.5f, 0}, .height = 9});
-    CHECK(reach(pond.state()) < 1);
+    CHECK(max_height(pond.state()) < 1);
     CHECK(sample_ripples(pond.state(), {0, 2.5f}).height != 0);
     CHECK(sample_ripples(pond.state(), {2.5f, 0}).height == 0);
     const IVec2 cells = pond.state().cells;
     pond.world.get<WaterRipples>(pond.entity).cell = 0.1f;
     pond.run(1);
     CHECK(pond.state().cells == cells / 2);
-    CHECK(reach(pond.state()) == 0);
+    CHECK(max_height(pond.state()) == 0);
     pond.world.get<Water>(pond.entity).size.x = 4;
     pond.run(1);
     CHECK(pond.state().cells == IVec2(cells.x, cells.y / 2));
@@ -343,7 +343,7 @@ TEST_CASE("water ripples: another size or cell begins another grid, at rest") {
     CHECK(pond.state().cells == IVec2(0));
 }
 
-TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") {
+TEST_CASE("water ripples: height, slope and velocity can be sampled anywhere") {
     RippleState state = make_ripples(pool(4, 3), {}, kStep);
     const auto field = [](const Vec2& p) { return 0.02f * p.x - 0.05f * p.y + 0.01f; };
     for (int z = 0; z < state.cells.y; ++z) {

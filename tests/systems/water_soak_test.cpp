@@ -17,7 +17,7 @@
 
 namespace limn::water_soak_test {
 
-TEST_CASE("water soak: after an hour of rain a pool holds its water and what floats in it") {
+TEST_CASE("water soak: after an hour of rain a pool keeps its water and its floating bodies") {
     constexpr int kStepsAMinute = 60 * 60;
     constexpr Vec3 kHalf = {0.2f, 0.1f, 0.15f};
     constexpr float kDensity = 400;
@@ -56,10 +56,10 @@ TEST_CASE("water soak: after an hour of rain a pool holds its water and what flo
         const double volume = ripple_volume(state);
         CHECK(std::abs(volume - state.level * area) < 1e-5);
         const FloatingState& floating = world.get<FloatingState>(crate);
-        const Vec3 place = world.get<Transform>(crate).position;
+        const Vec3 position = world.get<Transform>(crate).position;
         CHECK(std::isfinite(glm::length(floating.velocity) + glm::length(floating.spin)));
-        CHECK(std::abs(place.x) < 1.5f);
-        CHECK(std::abs(place.z) < 1.0f);
+        CHECK(std::abs(position.x) < 1.5f);
+        CHECK(std::abs(position.z) < 1.0f);
         if (minute > 0) {
             CHECK(volume == test::near(static_cast<double>(displaced)).epsilon(0.15).scale(0));
             CHECK(floating.submerged == test::near(kDensity / 1000).epsilon(0.25).scale(0));

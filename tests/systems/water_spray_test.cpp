@@ -34,7 +34,7 @@ WaterWave wave_of(float steepness, float length = 10) {
 }  // namespace
 
 TEST_CASE(
-    "water spray: at a crest water moves with pi S of the wave's speed"
+    "water spray: at a crest water moves at pi S times the wave's speed"
     * technique("water.crest-spray")) {
     const auto speed = static_cast<float>(phase_speed(2 * 3.14159265358979 / 10, 1e9));
     CHECK(speed == test::near(3.951342).epsilon(1e-6).scale(0));
@@ -69,7 +69,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water spray: drops begin near crests, not in rows, and go along the wave"
+    "water spray: drops start near crests, not in rows, and move along the wave"
     * technique("water.crest-spray")) {
     for (const float lean : {0.0f, 0.5f}) {
         WaterWave wave = wave_of(0.12f);
@@ -100,7 +100,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water spray: as many as the rate says, however long the step"
+    "water spray: the number of drops follows the rate, for any step length"
     * technique("water.crest-spray")) {
     const Sea sea(wave_of(0.2f));
     for (const float step : {0.001f, 0.01f}) {
@@ -117,7 +117,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water spray: an ocean sheds drops where it breaks, as fast as its water"
+    "water spray: an ocean emits drops where it breaks, at the speed of its water"
     * technique("water.crest-spray")) {
     // A patch of 16 m that moves with (3, 4, 0) m/s; its half with x > 8 m is pressed together.
     OceanState ocean{.made_for = {.foam_threshold = 0.9f}, .step = 0.5f, .cascades = {}};
@@ -161,7 +161,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water spray: a wall sprays most when a crest is at it, and not a quarter wave later"
+    "water spray: a wall sprays most at a crest, and not a quarter wave later"
     * technique("water.impact-spray")) {
     CHECK(impact_share(0) == 1);
     CHECK(impact_share(0.5f * kPi) < 1e-20f);
@@ -184,7 +184,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water spray: a wall throws drops back about as fast as the water was"
+    "water spray: a wall throws drops back at about the speed of the water"
     * technique("water.impact-spray")) {
     Sea sea({.amplitude = 0.5f, .length = 10}, 0);
     const Vec3 normal = glm::normalize(Vec3(-1, 0.1f, 0.8f));
@@ -212,7 +212,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water spray: a world makes its drops anew each step" * technique("water.crest-spray")) {
+TEST_CASE("water spray: a world refills its drops each step" * technique("water.crest-spray")) {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity water = world.create(
@@ -229,7 +229,7 @@ TEST_CASE("water spray: a world makes its drops anew each step" * technique("wat
         CHECK(drops + 6 >= 10);
         of_wall += world.get<SprayDrops>(wall).drops.size();
     }
-    // 3/8 of the time share of cos^4, half of the time: of 6000 / 60 a step.
+    // The mean of cos^4 is 3/8, over half of the time: of 6000 / 60 per step.
     CHECK(std::abs(static_cast<float>(of_wall) / (200 * 100) - 3.0f / 16) < 0.06f);
 }
 

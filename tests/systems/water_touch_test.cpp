@@ -24,11 +24,11 @@ Affine at(const Vec3& position, const Quat& rotation = Quat(1, 0, 0, 0)) {
 }
 
 /// A box of 12 triangles, outward, appended to `mesh`; its vertices follow `joint`.
-void add_box(MeshData& mesh, const Vec3& middle, const Vec3& half, std::uint16_t joint) {
+void add_box(MeshData& mesh, const Vec3& center, const Vec3& half, std::uint16_t joint) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (int i = 0; i < 8; ++i) {
         const Vec3 sign = {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1};
-        mesh.positions.push_back(middle + sign * half);
+        mesh.positions.push_back(center + sign * half);
         if (mesh.skin.first.empty()) {
             mesh.skin.first.push_back(0);
         }
@@ -78,7 +78,7 @@ float displaced(const Swimmer& swimmer, float height, const Quat& rotation = Qua
 
 }  // namespace
 
-TEST_CASE("water shape: below a level there is what the formula of each says") {
+TEST_CASE("water shape: the volume below a level matches the formula of each shape") {
     const Affine raised = at({0.3f, 0.2f, 0});
     const auto below = [&](WallShape shape, const Vec3& half, float height) {
         return volume_below(place_shape(shape, half, {0, 0.1f, 0}, raised, {}), height);
@@ -95,7 +95,7 @@ TEST_CASE("water shape: below a level there is what the formula of each says") {
     CHECK(below(WallShape::Box, Vec3(0.2f), 9) == test::near(0.064));
 }
 
-TEST_CASE("water shape: it reaches as far as its farthest point") {
+TEST_CASE("water shape: its extent is that of its farthest point") {
     const Quat turn = glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 0.5f)));
     const Vec3 half = {0.4f, 0.2f, 0.7f};
     for (const WallShape shape : {WallShape::Box, WallShape::Cylinder, WallShape::Ball}) {
@@ -121,7 +121,7 @@ TEST_CASE("water shape: it reaches as far as its farthest point") {
     }
 }
 
-TEST_CASE("water touch: a body in a small pool displaces what is below the level that it raises") {
+TEST_CASE("water touch: a body in a small pool displaces its volume below the raised level") {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity pool =
@@ -137,7 +137,7 @@ TEST_CASE("water touch: a body in a small pool displaces what is below the level
     CHECK(ripple_volume(world.get<RippleState>(pool)) == test::near(volume).epsilon(1e-3).scale(0));
 }
 
-TEST_CASE("water touch: what rides a swell pushes nothing up, what stands in it does") {
+TEST_CASE("water touch: a body that rides a swell displaces nothing, a fixed one does") {
     for (const bool rides : {true, false}) {
         World world;
         Schedule schedule = make_world_schedule();
@@ -172,7 +172,7 @@ TEST_CASE("water touch: what rides a swell pushes nothing up, what stands in it 
     }
 }
 
-TEST_CASE("water touch: a skinned body displaces what its mesh encloses, where its pose is") {
+TEST_CASE("water touch: a skinned body displaces the volume of its posed mesh") {
     Swimmer swimmer;
     CHECK(displaced(swimmer, -2) == test::near(kTrunk + kArm).epsilon(1e-4).scale(0));
     CHECK(displaced(swimmer, 2) == 0);
@@ -185,13 +185,13 @@ TEST_CASE("water touch: a skinned body displaces what its mesh encloses, where i
             displaced(swimmer, -0.2f)
             == test::near(turn < 0 ? trunk + kArm : trunk + 0.104f * kArm).epsilon(1e-2).scale(0));
     }
-    // The whole character lies down: the same pose, another place.
+    // The whole character lies down: the same pose at another position.
     swimmer.pose.joints[1] = at({0.5f, 0, 0});
     const Quat lies = glm::angleAxis(1.570796f, Vec3(1, 0, 0));
     CHECK(displaced(swimmer, -0.21f, lies) == test::near(kTrunk + kArm).epsilon(1e-3).scale(0));
 }
 
-TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where its limbs are") {
+TEST_CASE("water touch: in a world it wades, raises the level, and displaces water at its limbs") {
     World world;
     Schedule schedule = make_world_schedule();
     start_world(world);
@@ -217,8 +217,8 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
     }
     const RippleState& state = world.get<RippleState>(pool);
     CHECK(ripple_volume(state) == test::near(kTrunk + kArm).epsilon(1e-3).scale(0));
-    const auto raised = [&](const Vec2& place) {
-        const IVec2 cell(place / state.cell + 0.5f * Vec2(state.cells));
+    const auto raised = [&](const Vec2& position) {
+        const IVec2 cell(position / state.cell + 0.5f * Vec2(state.cells));
         return state.body[state.at(cell.x, cell.y)];
     };
     CHECK(raised({0, 0}) > 0.1f);
@@ -238,7 +238,7 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
     CHECK(ripple_volume(state) == test::near(kTrunk).epsilon(1e-3).scale(0));
 }
 
-TEST_CASE("water touch: a mesh without joints is its bounds; an open one fills its ellipsoid") {
+TEST_CASE("water touch: a mesh without joints uses its bounds; an open one fills its ellipsoid") {
     MeshData mesh;
     add_box(mesh, {0, 1, 0}, {0.2f, 0.3f, 0.4f}, 0);
     const TouchParts whole = make_touch_parts(mesh, nullptr);
@@ -267,16 +267,16 @@ TEST_CASE("water touch: a mesh without joints is its bounds; an open one fills i
     CHECK(make_touch_parts(broken, &other).parts.size() <= 1);
 }
 
-TEST_CASE("water touch: a body that is nowhere pushes nothing") {
+TEST_CASE("water touch: a body without a finite position displaces nothing") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
-    for (const Vec3& place :
+    for (const Vec3& position :
          {Vec3(nan, 0, 0), Vec3(0, nan, 0), Vec3(0, 0, -inf), Vec3(0, -inf, 0), Vec3(9, -9, 0)}) {
         World world;
         Schedule schedule = make_world_schedule();
         const Entity pool =
             world.create(Transform{}, Water{.size = {4, 3}}, WaterRipples{.cell = 0.1f});
-        world.create(Transform{.position = place}, WaterTouch{});
+        world.create(Transform{.position = position}, WaterTouch{});
         world.create(
             Transform{.position = {0, -1, 0}, .rotation = Quat(nan, 0, 0, 0)}, WaterTouch{});
         world.create(Transform{.position = {0, -1, 0}}, WaterTouch{.half = Vec3(inf)});

@@ -51,7 +51,7 @@ constexpr WakeEmitter kWake = {.spacing = 0.5f, .decay = 100};
 }  // namespace
 
 TEST_CASE(
-    "water wake: who stands still leaves no waves, nor does who jumps" * technique("water.wake")) {
+    "water wake: an emitter at rest or teleporting leaves no waves" * technique("water.wake")) {
     Sea sea(kWake);
     sea.sail(0, 120);
     CHECK(sea.rings() == 0);
@@ -62,7 +62,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water wake: there is a ring for each bit of way, whatever the speed"
+    "water wake: rings are equally spaced along the track, at any speed"
     * technique("water.wake")) {
     for (const float speed : {1.0f, 6.0f, 45.0f}) {
         Sea sea(kWake);
@@ -89,7 +89,7 @@ TEST_CASE("water wake: rings fade and end") {
 }
 
 TEST_CASE(
-    "water wake: behind what is faster than its waves they stay within the wedge"
+    "water wake: behind an emitter faster than its waves they stay within the wedge"
     * technique("water.wake")) {
     CHECK(kKelvinAngle == test::near(std::asin(1.0 / 3)).epsilon(1e-6).scale(0));
     CHECK(degrees(kKelvinAngle) == test::near(19.4712).epsilon(1e-5).scale(0));
@@ -124,7 +124,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water wake: it adds to the waves that are there" * technique("water.wake")) {
+TEST_CASE("water wake: it adds to existing waves" * technique("water.wake")) {
     const WaterWaves waves = {.waves = {{.amplitude = 0.3f, .length = 11}}};
     Sea calm(kWake);
     Sea rough(kWake, waves);

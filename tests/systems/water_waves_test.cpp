@@ -62,7 +62,7 @@ void check_derivatives(const WaterWaves& waves, const Vec2& at, double time, dou
 }  // namespace
 
 TEST_CASE(
-    "water waves: one of 10 m runs at 3.95 m/s, along its direction"
+    "water waves: a wave of 10 m runs at 3.95 m/s, along its direction"
     * technique("water.travelling-wave")) {
     const WaterWave wave = {.amplitude = 0.3f, .length = 10, .direction = 0.6f};
     const WaveTable start = table_of(wave, 0);
@@ -75,10 +75,11 @@ TEST_CASE(
     for (const double t : {0.5, 3.0, 1000.0}) {
         const WaveTable later = table_of(wave, t);
         for (const Vec2 at : {Vec2(0, 0), Vec2(3, -2), Vec2(-7.5f, 4)}) {
-            const double way = std::fmod(speed * t, 10.0);
+            const double distance = std::fmod(speed * t, 10.0);
             CHECK(
                 std::abs(
-                    height_of(later, at + static_cast<float>(way) * along) - height_of(start, at))
+                    height_of(later, at + static_cast<float>(distance) * along)
+                    - height_of(start, at))
                 < 4e-3f);
         }
     }
@@ -89,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: long ones are faster, with the root of the length"
+    "water waves: longer ones are faster, with the root of the length"
     * technique("water.travelling-wave")) {
     const auto speed = [](float length) {
         const WaveTable table = table_of(WaterWave{.length = length}, 0);
@@ -100,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: no higher than their amplitude, periodic, in the mean level"
+    "water waves: they are within their amplitude, periodic, with mean 0"
     * technique("water.travelling-wave")) {
     const WaterWave wave = {.amplitude = 0.3f, .length = 4, .direction = 1.1f, .phase = 0.4f};
     const WaveTable table = table_of(wave, 12.3);
@@ -120,7 +121,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: slopes and velocity are those of the surface"
+    "water waves: slopes and velocity match the surface"
     * technique("water.gerstner, water.travelling-wave")) {
     const WaterWaves lines = {
         .waves = {
@@ -139,7 +140,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water waves: shallow water slows them down, and deep water does not know its depth") {
+TEST_CASE("water waves: shallow water slows them down, in deep water depth is irrelevant") {
     const auto speed = [](float length, float depth) {
         const WaveTable table = table_of(WaterWave{.length = length}, 0, Water{.depth = depth});
         return table.lines[0].frequency / glm::length(table.lines[0].k);
@@ -150,7 +151,7 @@ TEST_CASE("water waves: shallow water slows them down, and deep water does not k
 }
 
 TEST_CASE(
-    "water waves: circles run outward or inward, and are the same all around"
+    "water waves: circles run outward or inward, and are rotationally symmetric"
     * technique("water.radial-wave")) {
     for (const bool inward : {false, true}) {
         const RadialWave wave = {
@@ -169,7 +170,7 @@ TEST_CASE(
                 at_radius(moved, 1, 1.25) == test::near(at_radius(r, 1, 1)).epsilon(1e-3).scale(0));
         }
     }
-    // The gradient points straight out; there is none in the middle.
+    // The gradient points straight out; there is none at the center.
     const WaveTable table = table_of(WaterWaves{.radial = {{.center = {1, -2}}}}, 0.3);
     const WavePoint point = evaluate_waves(table, {4, 2});
     CHECK(point.by_x.y * 4 == test::near(point.by_z.y * 3).epsilon(1e-4).scale(0));
@@ -177,7 +178,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: circles fade with the root of the distance where they should"
+    "water waves: circles fall off with the root of the distance beyond their radius"
     * technique("water.radial-wave")) {
     const RadialWave wave = {.amplitude = 0.2f, .length = 1, .fade_radius = 2};
     const WaveTable table = table_of(WaterWaves{.radial = {wave}}, 0);
@@ -188,7 +189,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: a drop's ring is a ring: nothing before its front, nothing behind"
+    "water waves: a drop's ring is 0 before its front and behind its tail"
     * technique("water.radial-packet")) {
     WavePacket drop = {
         .center = {0.5f, 0}, .length = 0.2f, .waves = 3, .decay = 0, .smooth = false};
@@ -214,7 +215,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: drops fade, age by the step, and are taken away when they have ended"
+    "water waves: drops fade, age by the step, and are removed when they end"
     * technique("water.radial-packet")) {
     const WavePacket young = {.age = 0.5f, .decay = 0.5f, .smooth = false};
     const WaveTable table = table_of(WaterWaves{.packets = {young}}, 0);
@@ -232,7 +233,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: smooth drops have no step at either edge, and the slopes of their surface"
+    "water waves: smooth drops are continuous at both edges, with matching slopes"
     * technique("water.radial-packet")) {
     const WaterWaves waves = {.packets = {{.age = 1.9f, .length = 1, .waves = 2, .decay = 0}}};
     const WaveTable table = table_of(waves, 0);
@@ -254,7 +255,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: a group is within its bounds, and the same for the same seed"
+    "water waves: a group is within its bounds, and reproducible by its seed"
     * technique("water.wave-sum")) {
     const WaveGroup group = {
         .count = 200, .length = {0.3f, 3}, .amplitude = {0.002f, 0.02f}, .direction = 2, .seed = 9};
@@ -283,7 +284,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: waves add up, no higher than all together, with half the sum of squares"
+    "water waves: waves add up, with the variance of half the sum of squares"
     * technique("water.wave-sum")) {
     const WaterWaves low = {.groups = {{.count = 4}}};
     const WaterWaves high = {
@@ -320,7 +321,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: without sharpness water moves up and down alone" * technique("water.gerstner")) {
+    "water waves: without sharpness water moves only vertically" * technique("water.gerstner")) {
     const WaveTable table = table_of(WaterWave{.sharpness = 0}, 1);
     const WavePoint point = evaluate_waves(table, {3, 4});
     CHECK(point.offset.x == 0);
@@ -329,7 +330,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: sharp ones are trochoids: the path of a point in a rolling wheel"
+    "water waves: sharp ones are trochoids, the path of a point on a rolling wheel"
     * technique("water.trochoid")) {
     // Of a wheel of radius 1 / k, at A from the axle, turned upside down (water.trochoid).
     const float length = 10;
@@ -360,7 +361,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: sharpness changes neither height nor period, and gathers points at crests"
+    "water waves: sharpness keeps height and period, and concentrates points at crests"
     * technique("water.gerstner")) {
     const float a = 0.5f;
     const float k = kTurn / 10;
@@ -382,7 +383,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: the sharpest are cusps; none folds over, however many there are"
+    "water waves: the sharpest are cusps, and any number of them never folds over"
     * technique("water.gerstner, water.trochoid")) {
     // Q = 3.183099 is the cusp of this wave.
     const WaveTable cusp =
@@ -401,7 +402,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water waves: in a real wave the water goes in circles" * technique("water.gerstner")) {
+TEST_CASE("water waves: in a Gerstner wave water moves in circles" * technique("water.gerstner")) {
     const WaterWave wave = {.amplitude = 0.4f, .length = 10, .sharpness = 1};
     for (int i = 0; i < 24; ++i) {
         const Vec3 offset = evaluate_waves(table_of(wave, 2.530786 * i / 24), {1.3f, 0.7f}).offset;
@@ -433,7 +434,7 @@ TEST_CASE(
     }
     CHECK(crest > kPi / 2);
     CHECK(profile(0.3f, crest) == test::near(1));
-    // Steeper in front, on the way to pi, than behind.
+    // Steeper in front, toward pi, than behind.
     CHECK(1 / (kPi - crest) > 1.3f / crest);
     // There is one crest, up to the most that it may lean.
     for (const float lean : {0.3f, 0.99f, 5.0f}) {
@@ -451,7 +452,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water waves: at many points at once they are the same, and vectors are plain code"
+    "water waves: batches equal single points, and SIMD equals scalar code"
     * technique("water.wave-sum")) {
     const WaterWaves waves = {
         .waves = {{.amplitude = 0.3f, .length = 7, .sharpness = 1, .lean = 0.4f}},
@@ -480,7 +481,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("water waves: all of a point's motion, by vectors of lines and by plain code") {
+TEST_CASE("water waves: offset, derivatives and velocity are the same by SIMD and scalar code") {
     using Numbers = std::array<double, 12>;
     const auto numbers = [](const WavePoint& p) {
         Numbers all{};
@@ -530,7 +531,7 @@ TEST_CASE("water waves: all of a point's motion, by vectors of lines and by plai
     }
 }
 
-TEST_CASE("water waves: far from the origin, where phases are large, vectors are as exact") {
+TEST_CASE("water waves: far from the origin, where phases are large, SIMD is as accurate") {
     const WaveTable table = table_of(WaterWave{.amplitude = 1, .length = 3}, 0);
     std::vector<float> x;
     for (int i = 0; i < 64; ++i) {
@@ -547,7 +548,7 @@ TEST_CASE("water waves: far from the origin, where phases are large, vectors are
     }
 }
 
-TEST_CASE("water waves: what is no wave is left out") {
+TEST_CASE("water waves: invalid waves are skipped") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const WaterWaves bad = {
         .waves =

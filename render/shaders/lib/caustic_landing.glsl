@@ -34,7 +34,7 @@ float pool_light(float height, float min_height, float inverse_range) {
 
 // Where a mirror's vertex reflects light from `light` (position and 1, or the direction toward it and 0): point on
 // the plane dot(normal, x) = plane.w, and w: light there. `look`: exponents of the cosines at the plane and at the
-// mirror, maximum distance, maximum height above the plane. A vertex that faces away stays in place, with w = -1.
+// mirror, maximum distance, maximum height above the plane. A vertex that faces away stays where it is, with w = -1.
 vec4 mirror_vertex(vec3 vertex, vec3 normal, vec4 light, vec4 plane, vec4 look) {
     vec3 incoming = light.w > 0.0 ? normalize(vertex - light.xyz) : -light.xyz;
     float facing = -dot(incoming, normal);
@@ -45,10 +45,10 @@ vec4 mirror_vertex(vec3 vertex, vec3 normal, vec4 light, vec4 plane, vec4 look) 
     float toward = -dot(plane.xyz, outgoing);
     float height = dot(plane.xyz, vertex) - plane.w;
     float path = toward > 1e-9 ? height / toward : height > 0.0 ? 0.0 : look.z;
-    vec3 place = vertex + clamp(path, 0.0, look.z) * outgoing;
-    float above = dot(plane.xyz, place) - plane.w;
+    vec3 landing = vertex + clamp(path, 0.0, look.z) * outgoing;
+    float above = dot(plane.xyz, landing) - plane.w;
     bool black = above > look.w;
-    place -= path > look.z || black ? above * plane.xyz : vec3(0.0);
+    landing -= path > look.z || black ? above * plane.xyz : vec3(0.0);
     float lit = pow(max(toward, 1e-9), look.x) * pow(max(facing, 1e-9), look.y);
-    return vec4(place, black || toward <= 0.0 ? -1.0 : lit);
+    return vec4(landing, black || toward <= 0.0 ? -1.0 : lit);
 }

@@ -1,4 +1,4 @@
-// Circles of confusion and the layers that they are sorted into.
+// Circles of confusion, and the layers of pixels sorted by them.
 // Techniques: post.circle-of-confusion
 
 #include "depth_of_field_gpu.h"
@@ -15,16 +15,16 @@ float circle(float depth) {
     return clamp(diameter, -focus.lens.w, focus.lens.w);
 }
 
-// Share of a pixel in the far or near layer, which are blurred at half resolution.
-float far_share(float diameter) {
+// Weight of a pixel in the far or near layer, which are blurred at half resolution.
+float far_weight(float diameter) {
     return clamp((diameter - kFullResDiameter) / (kHalfResDiameter - kFullResDiameter), 0.0, 1.0);
 }
-float near_share(float diameter) {
-    return far_share(-diameter);
+float near_weight(float diameter) {
+    return far_weight(-diameter);
 }
 
-// Share of a circle of `radius` [px] that is gathered coarsely, from a lower mip level.
-float coarse_share(float radius) {
+// Weight with which a circle of `radius` [px] is gathered coarsely, from a lower mip level.
+float coarse_weight(float radius) {
     return clamp(radius - kFineRadius + 0.5, 0.0, 1.0);
 }
 
@@ -33,33 +33,33 @@ float level_of(float radius) {
     return min(ceil(log2(max(radius / kLevelRadius, 1.0))), float(focus.tiles.w));
 }
 
-// Radius of the aperture whose rim passes through `place`: 1 for the unit aperture, whatever its shape.
-float aperture_radius(vec2 place) {
+// Radius of the scaled aperture whose rim passes through `point`: 1 for the unit aperture, whatever its shape.
+float aperture_radius(vec2 point) {
     if (focus.aperture.x < 3.0) {
-        return length(place);
+        return length(point);
     }
     float slice = 6.28318531 / focus.aperture.x;
-    float angle = atan(place.y, place.x) - focus.aperture.y;
-    float from_middle = angle - (floor(angle / slice) + 0.5) * slice;
-    return length(place) * cos(from_middle) / cos(0.5 * slice);
+    float angle = atan(point.y, point.x) - focus.aperture.y;
+    float from_center = angle - (floor(angle / slice) + 0.5) * slice;
+    return length(point) * cos(from_center) / cos(0.5 * slice);
 }
 
-// Stored instead of the circle of a pixel whose radiance is not finite, and which is ignored.
+// Stored as the radius of a pixel with non-finite radiance, which is ignored.
 const float kUnknown = 32768.0;
 
 // Kernel radius at half resolution [texels], and 1 / the texels that it covers, for discs of `radius` [px]: narrower
 // by the tents of down- and upsampling, which blur too (variances add).
 vec2 kernel_of(float radius) {
-    float place = float(kKernelStep) * radius;
-    int i = clamp(int(place), 0, kKernels - 2);
+    float index = float(kKernelStep) * radius;
+    int i = clamp(int(index), 0, kKernels - 2);
     vec4 low = focus.kernel[i >> 1];
     vec4 high = focus.kernel[(i + 1) >> 1];
     bool odd = (i & 1) != 0;
-    return mix(odd ? low.zw : low.xy, odd ? high.xy : high.zw, place - float(i));
+    return mix(odd ? low.zw : low.xy, odd ? high.xy : high.zw, index - float(i));
 }
 
-// Weight of a circle or kernel that is clearly smaller than `own`: behind the focus it lies in front of `own`, before
-// the focus behind it. Else 0: both are in the same layer.
+// 1 for a circle or kernel clearly smaller than `own`: behind the focus it is in front of `own`, in front of the focus
+// behind it. 0 if both are in the same layer.
 float front_weight(float circle, float own) {
     return clamp((own - circle) / (0.1 * own + 0.1) - 1.0, 0.0, 1.0);  // by eye
 }
@@ -73,7 +73,7 @@ float luminance_of(vec3 light) {
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// Weight for averaging circles: the brightest pixel decides, else a lamp before a dark sky would get a mixture of both.
+// Weight for averaging circles, by luminance: otherwise a lamp in front of a dark sky would get a mixture of both.
 float radius_weight(vec4 light) {
     return luminance_of(light.rgb) + 1e-6 * light.a;
 }

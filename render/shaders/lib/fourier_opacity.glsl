@@ -1,11 +1,11 @@
 // Shadows of particles by Fourier opacity maps (Jansen and Bavoil, "Fourier Opacity Mapping", I3D 2010): along each ray
-// of a light, the density that it meets as a Fourier series of three harmonics over the range of depths that particles
-// are in. The integral of that series up to a point, negated, is the logarithm of the transmittance there. Beyond the
-// range it is exact, within it is as blurred as the series is short. (render/particles/particle_shadow_pass.h)
+// of a light, the density as a Fourier series of three harmonics over the range of depths that holds particles. The
+// integral of that series up to a point, negated, is the logarithm of the transmittance there: exact beyond the range,
+// blurred within it, as the series is short. (render/particles/particle_shadow_pass.h)
 // Techniques: particle.shadow
 
 const float kTurn = 6.28318530718;
-const float kMaxOpacity = 0.98;  // of a particle: what is opaque would have infinite optical depth
+const float kMaxOpacity = 0.98;  // of a particle: an opaque one would have infinite optical depth
 
 // The seven coefficients, in two texels: a0, a1, b1, a2; b2, a3, b3, 0.
 struct OpacitySeries {
@@ -30,7 +30,7 @@ float sinc(float x) {
     return abs(x) < 1e-3 ? 1.0 - x * x / 6.0 : sin(x) / x;
 }
 
-// Of a slab of this opacity about `depth`, `thickness` deep (shares of the range).
+// Of a slab of this opacity centered at `depth`, `thickness` deep (fractions of the range).
 OpacitySeries slab_series(float opacity, float depth, float thickness) {
     float weight = -2.0 * log(1.0 - clamp(opacity, 0.0, kMaxOpacity));
     Harmonics h = harmonics(kTurn * depth);
@@ -41,7 +41,7 @@ OpacitySeries slab_series(float opacity, float depth, float thickness) {
     return OpacitySeries(vec4(weight, a.x, b.x, a.y), vec4(b.y, a.z, b.z, 0.0));
 }
 
-// Of all that is before `depth`, a share of the range; >= 0.
+// Of everything up to `depth`, a fraction of the range; >= 0.
 float optical_depth(OpacitySeries series, float depth) {
     float d = clamp(depth, 0.0, 1.0);
     Harmonics h = harmonics(kTurn * d);

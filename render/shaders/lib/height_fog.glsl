@@ -1,4 +1,4 @@
-// Fog that thins with height, from the camera on (render/environment/fog_block.h).
+// Fog that thins with height, integrated from the camera (render/environment/fog_block.h).
 // Techniques: light.height-fog
 
 #include "lib/view.glsl"
@@ -14,14 +14,14 @@ float fog_optical_depth(float rise, float path) {
     return min(height_fog.density.x * path * mean, kMaxOpticalDepth);
 }
 
-// Henyey and Greenstein's.
+// Phase function of Henyey and Greenstein.
 float fog_phase(float cosine) {
     float g = height_fog.density.z;
     float d = 1.0 + g * g - 2.0 * g * cosine;
     return (1.0 - g * g) / (4.0 * 3.14159265 * d * sqrt(d));
 }
 
-// Radiance that `path` meters scatter toward the camera, and their opacity; `direction`: unit.
+// In-scattered radiance over `path` [m] from the camera, and the opacity; `direction`: unit.
 vec4 fog_along(vec3 direction, float path) {
     float opacity = 1.0 - exp(-fog_optical_depth(direction.y, path));
     vec3 scattered = height_fog.ambient.rgb + height_fog.sun.rgb * fog_phase(dot(direction, height_fog.to_sun.xyz));
@@ -32,7 +32,7 @@ vec4 fog_before(vec3 position_ws) {
     if (height_fog.density.x <= 0.0) {
         return vec4(0.0);
     }
-    vec3 way = position_ws - view.camera_ws.xyz;
-    float path = max(length(way), 1e-6);
-    return fog_along(way / path, max(path - view.orthographic.x, 0.0));
+    vec3 ray = position_ws - view.camera_ws.xyz;
+    float path = max(length(ray), 1e-6);
+    return fog_along(ray / path, max(path - view.orthographic.x, 0.0));
 }

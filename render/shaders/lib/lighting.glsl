@@ -81,7 +81,7 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     Underwater water = underwater_at(position_ws);
     bool under_water = water.depth >= 0.0;
     vec3 bent = bent_to_light(water, to_light);
-    irradiance *= under_water ? underwater_share(water, to_light, bent) : vec3(1.0);
+    irradiance *= under_water ? underwater_transmittance(water, to_light, bent) : vec3(1.0);
     FocusedLight focused = focused_light_at(water, index);
     if (focused.view >= 0.0 && under_water) {
         irradiance *= focused.light;

@@ -34,9 +34,9 @@ float fresnel(float cos_in, float index) {
 // Within 0.06 of fresnel() from air into water (Schlick 1994).
 float fresnel_schlick(float cos_in, float index) {
     float root = (index - 1.0) / (index + 1.0);
-    float head_on = root * root;
+    float normal_incidence = root * root;
     float m = 1.0 - clamp(cos_in, 0.0, 1.0);
-    return head_on + (1.0 - head_on) * (m * m) * (m * m) * m;
+    return normal_incidence + (1.0 - normal_incidence) * (m * m) * (m * m) * m;
 }
 
 // For water only, by the angle (T'so and Barsky 1987). Too bright by up to 0.27.

@@ -7,7 +7,7 @@
 layout(binding = kProjectorImagesUnit) uniform sampler2DArray projector_images;  // linear, with mip levels
 layout(binding = kProjectorsUnit) uniform samplerBuffer projectors;         // ProjectorRecord
 
-// Color by which cookie `number` (from 1; 0 is none) filters the light at `position_ws`.
+// Color filter of cookie `number` (from 1; 0 is none) for light at `position_ws`.
 vec3 projected_color(float number, vec3 position_ws) {
     int at = max(int(number) - 1, 0) * int(kProjectorTexels);
     vec4 row_s = texelFetch(projectors, at);
@@ -15,9 +15,9 @@ vec3 projected_color(float number, vec3 position_ws) {
     vec4 row_q = texelFetch(projectors, at + 2);
     vec4 frame = texelFetch(projectors, at + 3);
     vec4 source = texelFetch(projectors, at + 4);
-    vec4 place = vec4(position_ws, 1.0);
-    float q = dot(row_q, place);
-    vec2 uv = vec2(dot(row_s, place), dot(row_t, place)) / q;
+    vec4 position = vec4(position_ws, 1.0);
+    float q = dot(row_q, position);
+    vec2 uv = vec2(dot(row_s, position), dot(row_t, position)) / q;
     bool inside = q > 0.0 && all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
 
     // Mip level from the texels that a pixel covers here; screen derivatives would break at the frame's edges.

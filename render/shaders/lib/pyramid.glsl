@@ -9,15 +9,15 @@ float tent_area(float x) {
     return x < 0.0 ? tail : 1.0 - tail;
 }
 
-// Share of the tent about `middle` of half-width `ratio` that lies in from .. to [pixels of the larger image].
-float tent_share(float from, float to, float middle, float ratio) {
-    return tent_area((to - middle) / ratio) - tent_area((from - middle) / ratio);
+// Fraction of the tent about `center` of half-width `ratio` that lies in from .. to [pixels of the larger image].
+float tent_fraction(float from, float to, float center, float ratio) {
+    return tent_area((to - center) / ratio) - tent_area((from - center) / ratio);
 }
 
 // The same for pixel `at` smoothed with its two neighbors by [1 2 1] / 4.
-float smooth_share(float at, float middle, float ratio) {
+float smooth_fraction(float at, float center, float ratio) {
     return 0.25
-           * (tent_share(at, at + 2.0, middle, ratio) + tent_share(at - 1.0, at + 1.0, middle, ratio));
+           * (tent_fraction(at, at + 2.0, center, ratio) + tent_fraction(at - 1.0, at + 1.0, center, ratio));
 }
 
 int mirrored(int at, int size) {

@@ -19,7 +19,7 @@
 struct Incoming {
     vec3 to_light;    // unit
     vec3 irradiance;  // on a plane that faces the light
-    vec3 unshadowed;  // the same without what stands in the light's way
+    vec3 unshadowed;  // the same without occluders
 };
 
 // The terms of a surface that are the same for all lights.
@@ -29,11 +29,11 @@ struct Reflector {
     float n_v;
     uint model;        // kModel*
     float alpha2;      // roughness^4
-    vec3 diffuse;      // albedo of the diffuse part, less what the specular part reflects
+    vec3 diffuse;      // albedo of the diffuse part, less the reflectance of the specular part
     vec3 specular_0;   // reflectance at normal incidence, with multiple scattering; factor of Response::specular
     vec3 specular_90;  // the same at grazing angles; factor of Response::fresnel
     vec3 mirror;       // specular reflectance for a uniform environment
-    vec4 own;          // of the lobe: its file says what
+    vec4 own;          // parameters of the lobe, defined by its file
 #ifdef SHADE_SUBSURFACE
     vec3 diffusion;    // d of the profile of Subsurface [m]
 #endif
@@ -57,7 +57,7 @@ struct Cosines {
     vec3 to_light;  // unit
 };
 
-// What a surface makes of an irradiance of 1, before the factors of its Reflector.
+// Reflection of an irradiance of 1, before the factors of the Reflector.
 struct Response {
     vec3 diffuse;    // n.l
     float specular;  // lobe
@@ -92,7 +92,7 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     return r;
 }
 
-// Of the skin as its shadow maps know it, without folds that light bounces in.
+// Normal of the skin as in its shadow maps, without the folds that light bounces in.
 vec3 body_normal(Reflector r) {
 #ifdef FOLD_LIGHT
     return r.open < 1.0 ? r.fading.xyz : r.normal;
@@ -109,8 +109,8 @@ struct LightSum {
 };
 
 #ifdef SMOOTH_NORMALS
-// Of light on wrinkled skin by the cosine at the skin without wrinkles: none reaches its back, and highlights of single
-// slopes do not pop up where it turns to the light (wrinkle.compression.lighting).
+// Fade of light on wrinkled skin by the cosine at the skin without wrinkles: its back is unlit, and highlights of
+// single slopes do not pop up where it turns to the light (wrinkle.compression.lighting).
 float grazing_fade(float cosine) {
     return clamp(8.0 * cosine, 0.0, 1.0);
 }

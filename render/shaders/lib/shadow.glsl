@@ -2,7 +2,7 @@
 //
 // The bias needs no tuning. Lookups are offset along the normal by up to a texel of the map in world units, more at
 // grazing incidence; and every texel of a filter is compared with the depth of the surface's plane there (receiver
-// plane bias), not with that of the point. Planes have no acne at any angle, curved surfaces gain by the offset, and a
+// plane bias), not with that of the point. Planes have no acne at any angle, the offset helps curved surfaces, and a
 // shadow is detached from its caster by two texels at most.
 // After Isidoro, "Shadow Mapping: GPU-based Tips and Techniques", 2006; King, "Shadow Mapping Algorithms", 2004.
 //
@@ -23,7 +23,7 @@
 layout(binding = kShadowAtlasUnit) uniform sampler2D shadow_atlas;     // reversed depth, 0 where empty
 layout(binding = kShadowViewsUnit) uniform samplerBuffer shadow_views;  // ShadowViewRecord
 
-const float kCascadeBlend = 0.1;  // share of a cascade over which it blends into the next one
+const float kCascadeBlend = 0.1;  // fraction of a cascade over which it blends into the next one
 
 // ShadowFilter.
 const float kFilterHard = 0.0;
@@ -71,7 +71,7 @@ vec2 corner_at(ShadowPoint p, vec2 st) {
 }
 
 // Bilinear 2x2 comparison (PCF); or the nearest texel only.
-float lit_share(ShadowPoint p, bool hard) {
+float lit_fraction(ShadowPoint p, bool hard) {
     vec2 corner = corner_at(p, p.st);
     vec2 st = hard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
     return lit_area(p, st, corner, 0.5);
@@ -96,10 +96,10 @@ float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
     return sum / max(count, 1.0);
 }
 
-// All filters in one loop over 2x2 texels, since a software OpenGL would execute one loop for each filter: one step
+// All filters in one loop over 2x2 texels, since a software OpenGL would execute one loop per filter: one iteration
 // for the narrow filters; nine for the soft one, 6x6 texels of which the square covers 5x5; and for the
 // contact-hardening one, points of a disc as wide as the penumbra (Fernando 2005).
-float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
+float filtered_visibility(ShadowPoint p, vec4 settings, vec2 pixel, bool needed) {
     float filter_kind = settings.x;
     bool contact = filter_kind == kFilterContactHardening;
     bool soft = filter_kind == kFilterSoft;
@@ -112,7 +112,7 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
     float radius = clamp(0.5 * settings.z * (blocker - p.depth), 0.0, settings.w);
 
     vec2 near = soft ? floor(p.st - kSoftHalf) : corner_at(p, p.st);
-    vec2 middle = filter_kind == kFilterHard ? near + 0.5 + step(0.5, p.st - 0.5 - near) : p.st;
+    vec2 center = filter_kind == kFilterHard ? near + 0.5 + step(0.5, p.st - 0.5 - near) : p.st;
     float half_side = soft ? kSoftHalf : 0.5;
     int taps = contact ? kPenumbraTaps : soft ? 9 : 1;
     float sum = 0.0;
@@ -121,34 +121,34 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
         float row = floor((float(n) + 0.5) / 3.0);
         vec2 st = p.st + turn * (radius * sqrt((float(n) + 0.5) / float(kPenumbraTaps)));
         vec2 corner = contact ? corner_at(p, st) : near + (soft ? 2.0 * vec2(float(n) - 3.0 * row, row) : vec2(0.0));
-        sum += lit_area(p, contact ? clamp(st, p.rect.xy + 1.0, p.rect.zw - 1.0) : middle, corner, half_side);
+        sum += lit_area(p, contact ? clamp(st, p.rect.xy + 1.0, p.rect.zw - 1.0) : center, corner, half_side);
         turn = vec2(turn.x * kGoldenTurn.x - turn.y * kGoldenTurn.y, turn.x * kGoldenTurn.y + turn.y * kGoldenTurn.x);
     } while (++n < taps);
     float lit = sum / (contact ? float(kPenumbraTaps) : soft ? 16.0 : 1.0);
     return contact && blocker == 0.0 ? 1.0 : lit;
 }
 #elif defined(SHADOW_SOFT)
-// The same without the last one. Rows of three steps, so that narrow filters end after the first.
-// Not `asked`: any result will do, as soon as possible.
-float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel, bool asked) {
-    bool soft = asked && settings.x == kFilterSoft;
+// The same without the contact-hardening filter. Three lookups per row, so that narrow filters end after the first row.
+// Not `needed`: any result will do, as soon as possible.
+float filtered_visibility(ShadowPoint p, vec4 settings, vec2 pixel, bool needed) {
+    bool soft = needed && settings.x == kFilterSoft;
     vec2 corner = soft ? floor(p.st - kSoftHalf) : corner_at(p, p.st);
-    vec2 middle = settings.x == kFilterHard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
+    vec2 center = settings.x == kFilterHard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
     float half_side = soft ? kSoftHalf : 0.5;
     int rows = soft ? 3 : 1;
     float sum = 0.0;
     int row = 0;
     do {
-        sum += lit_area(p, middle, corner, half_side);
-        sum += lit_area(p, middle, corner + vec2(2.0, 0.0), half_side);
-        sum += lit_area(p, middle, corner + vec2(4.0, 0.0), half_side);
+        sum += lit_area(p, center, corner, half_side);
+        sum += lit_area(p, center, corner + vec2(2.0, 0.0), half_side);
+        sum += lit_area(p, center, corner + vec2(4.0, 0.0), half_side);
         corner.y += 2.0;
     } while (++row < rows);
     return soft ? sum / 16.0 : sum;
 }
 #endif
 
-// Visibility in one view; 1 outside of it.
+// Visibility in one view; 1 outside it.
 float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
     int at = view_index * int(kShadowViewTexels);
     vec4 row_s = texelFetch(shadow_views, at);
@@ -157,23 +157,23 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
     vec4 row_q = texelFetch(shadow_views, at + 3);
     vec4 settings = texelFetch(shadow_views, at + 8);
 
-    // Width of a texel here: the inverse of the texel gradient.
-    vec4 place = vec4(position_ws, 1.0);
-    float q = dot(row_q, place);
-    vec2 st = vec2(dot(row_s, place), dot(row_t, place)) / q;
+    // Width of a texel at the surface: the inverse of the texel gradient.
+    vec4 position = vec4(position_ws, 1.0);
+    float q = dot(row_q, position);
+    vec2 st = vec2(dot(row_s, position), dot(row_t, position)) / q;
     vec3 right = row_s.xyz - st.x * row_q.xyz;
     vec3 up = row_t.xyz - st.y * row_q.xyz;
     float texel = abs(q) * inversesqrt(min(dot(right, right), dot(up, up)));
     float n_l = clamp(dot(normal, to_light), 0.0, 1.0);
-    place.xyz += normal * (settings.y * texel * (kOffsetFacing + kOffsetGrazing * sqrt(1.0 - n_l * n_l)));
+    position.xyz += normal * (settings.y * texel * (kOffsetFacing + kOffsetGrazing * sqrt(1.0 - n_l * n_l)));
 
     ShadowPoint p;
-    q = dot(row_q, place);
-    p.st = vec2(dot(row_s, place), dot(row_t, place)) / q;
-    p.depth = dot(row_r, place) / q;
+    q = dot(row_q, position);
+    p.st = vec2(dot(row_s, position), dot(row_t, position)) / q;
+    p.depth = dot(row_r, position) / q;
     p.rect = texelFetch(shadow_views, at + 7);
     vec3 slanted = normal + to_light * max(kMinCosine - n_l, 0.0);
-    vec4 plane = vec4(slanted, -dot(slanted, place.xyz));
+    vec4 plane = vec4(slanted, -dot(slanted, position.xyz));
     vec3 plane_in_shadow = vec3(
         dot(texelFetch(shadow_views, at + 4), plane),
         dot(texelFetch(shadow_views, at + 5), plane),
@@ -182,9 +182,9 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
 
     bool inside = q > 0.0 && all(greaterThan(p.st, p.rect.xy)) && all(lessThan(p.st, p.rect.zw));
 #ifdef SHADOW_SOFT
-    float lit = filtered_share(p, settings, pixel, inside);
+    float lit = filtered_visibility(p, settings, pixel, inside);
 #else
-    float lit = lit_share(p, settings.x == kFilterHard);
+    float lit = lit_fraction(p, settings.x == kFilterHard);
 #endif
     return inside ? lit : 1.0;
 }
@@ -222,10 +222,10 @@ int first_view(vec4 shadow, vec3 to_light) {
     return index;
 }
 
-const float kOpaque = 1e6;  // more than anything that light passes [m]
+const float kOpaque = 1e6;  // more than any thickness that transmits light [m]
 
-// Distance [m] that light has traveled at `position_ws` since it met the nearest caster, the mean of 2x2 texels; kOpaque
-// of lights without a map and beyond it. Of cascades, the first that holds the point.
+// Thickness [m] of matter that light has crossed at `position_ws`: distance from the nearest caster, the mean of 2x2
+// texels; kOpaque for lights without a map and outside the map. Of cascades, the first that contains the point.
 float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
     int index = first_view(shadow, to_light);
 #ifdef SHADOW_CASCADES
@@ -237,25 +237,25 @@ float shadow_thickness(vec4 shadow, vec3 position_ws, vec3 to_light) {
     int at = index * int(kShadowViewTexels);
     vec4 row_r = texelFetch(shadow_views, at + 2);
     vec4 row_q = texelFetch(shadow_views, at + 3);
-    vec4 place = vec4(position_ws, 1.0);
-    float q = dot(row_q, place);
-    float r = dot(row_r, place);
-    vec2 st = vec2(dot(texelFetch(shadow_views, at), place), dot(texelFetch(shadow_views, at + 1), place)) / q;
+    vec4 position = vec4(position_ws, 1.0);
+    float q = dot(row_q, position);
+    float r = dot(row_r, position);
+    vec2 st = vec2(dot(texelFetch(shadow_views, at), position), dot(texelFetch(shadow_views, at + 1), position)) / q;
     vec4 rect = texelFetch(shadow_views, at + 7);
     vec2 corner = floor(clamp(st, rect.xy + 1.0, rect.zw - 1.0) - 0.5);
     vec4 nearest = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
     // Depth (r + t r') / (q + t q') at t toward the light, solved for t.
     vec4 travel = (nearest * q - r) / (dot(row_r.xyz, to_light) - nearest * dot(row_q.xyz, to_light));
-    vec2 share = clamp(st - corner - 0.5, 0.0, 1.0);
+    vec2 fraction = clamp(st - corner - 0.5, 0.0, 1.0);
     travel = max(travel, vec4(0.0));
-    float mean = mix(mix(travel.w, travel.z, share.x), mix(travel.x, travel.y, share.x), share.y);
+    float mean = mix(mix(travel.w, travel.z, fraction.x), mix(travel.x, travel.y, fraction.x), fraction.y);
     bool inside = q > 0.0 && all(greaterThan(st, rect.xy)) && all(lessThan(st, rect.zw));
     bool has_map = shadow.y != kShadowNone && shadow.y != kShadowMask;
     return inside && has_map ? mean : kOpaque;
 }
 #endif
 
-// Share of the light that reaches `position_ws`, 0 .. 1.
+// Fraction of the light that arrives at `position_ws`, 0 .. 1.
 //   shadow  LightRecord::shadow
 //   normal  of the surface, unit
 //   pixel   that shows it, gl_FragCoord.xy
@@ -275,8 +275,8 @@ float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light
     do {
         int cascade = int(passed);
         bool exists = passed < shadow.z;
-        float seen = view_visibility(index + (exists ? cascade : 0), position_ws, normal, to_light, pixel);
-        lit += weight * (exists ? seen : 1.0);
+        float visible = view_visibility(index + (exists ? cascade : 0), position_ws, normal, to_light, pixel);
+        lit += weight * (exists ? visible : 1.0);
         passed += 1.0;
         weight = next;
         next = 0.0;

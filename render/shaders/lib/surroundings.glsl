@@ -29,16 +29,16 @@ layout(std140, binding = kProbesBinding) uniform Probes {
 #define probe_block probe_blocks[min(int(view.size.x), 0)]
 #endif
 
-// Transforms from world space to the space where the probe's ball or cube is the unit one.
-vec3 into_place(ProbeRecord probe, vec3 v, float w) {
+// Transforms from world space to probe space, where the region is the unit ball or cube.
+vec3 to_probe_space(ProbeRecord probe, vec3 v, float w) {
     vec4 p = vec4(v, w);
     return vec3(
         dot(probe.probe_from_world[0], p), dot(probe.probe_from_world[1], p), dot(probe.probe_from_world[2], p));
 }
 
-// 1 within, then smoothly down to 0 over the rim.
+// 1 inside, with a smooth falloff to 0 over the border.
 float probe_weight(ProbeRecord probe, vec3 position) {
-    vec3 p = into_place(probe, position, 1.0);
+    vec3 p = to_probe_space(probe, position, 1.0);
     vec3 size = abs(p);
     float outward = probe.shape.x > 0.5 ? max(size.x, max(size.y, size.z)) : length(p);
     return 1.0 - smoothstep(0.0, 1.0, (outward - 1.0) * probe.shape.y);
@@ -51,38 +51,39 @@ vec3 probe_direction(ProbeRecord probe, vec3 position, vec3 direction) {
     if (probe.shape.x < 0.5) {
         return direction;
     }
-    vec3 p = into_place(probe, position, 1.0);
-    vec3 d = into_place(probe, direction, 0.0);
+    vec3 p = to_probe_space(probe, position, 1.0);
+    vec3 d = to_probe_space(probe, direction, 0.0);
     vec3 inverse = 1.0 / mix(d, vec3(1e-8), lessThan(abs(d), vec3(1e-8)));
     vec3 distances = max((1.0 - p) * inverse, (-1.0 - p) * inverse);
-    return position + max(min(distances.x, min(distances.y, distances.z)), 0.0) * direction - probe.seen_from.xyz;
+    float path = max(min(distances.x, min(distances.y, distances.z)), 0.0);
+    return position + path * direction - probe.capture_position.xyz;
 }
 #endif
 
 EnvironmentLight environment_light(vec3 position, vec3 normal, vec3 mirror_direction, float roughness) {
     EnvironmentLight sum = EnvironmentLight(vec3(0.0), vec3(0.0));
-    float left = 1.0;
+    float remaining = 1.0;
 #ifdef PROBES
     int count = int(probe_block.count.x);
     for (int i = 0; i < count; ++i) {
         ProbeRecord probe = probe_block.probes[i];
-        float share = left * probe_weight(probe, position);
-        if (share > 0.0) {
+        float weight = remaining * probe_weight(probe, position);
+        if (weight > 0.0) {
             vec3 direction = probe_direction(probe, position, mirror_direction);
-            float layer = probe.seen_from.w;
-            sum.irradiance += share * irradiance_toward(surroundings[int(layer)], normal);
-            sum.mirrored += share
+            float layer = probe.capture_position.w;
+            sum.irradiance += weight * irradiance_toward(surroundings[int(layer)], normal);
+            sum.mirrored += weight
                             * reflected_radiance(
                                 reflection_maps, layer, environment.reflection.xy, direction, roughness);
-            left -= share;
+            remaining -= weight;
         }
     }
-    if (left <= 0.0) {
+    if (remaining <= 0.0) {
         return sum;
     }
 #endif
-    sum.irradiance += left * irradiance_toward(surroundings[0], normal);
+    sum.irradiance += remaining * irradiance_toward(surroundings[0], normal);
     sum.mirrored +=
-        left * reflected_radiance(reflection_maps, 0.0, environment.reflection.xy, mirror_direction, roughness);
+        remaining * reflected_radiance(reflection_maps, 0.0, environment.reflection.xy, mirror_direction, roughness);
     return sum;
 }

@@ -6,7 +6,7 @@ const float kMaxVelocity = 8.0;   // image sizes
 const float kMinVelocity = 1.0 / 256.0;  // [px]; less is rounding: OpenGL may snap vertices to as much
 
 // `now`: NDC without the jitter. `previous`: clip x, y, w of the point in the previous frame, without the jitter;
-// points beside or behind the camera come from far outside. NaN becomes no motion. `size`: of the image [px].
+// points beside or behind the camera map to far off screen. NaN becomes no motion. `size`: of the image [px].
 vec2 velocity_from(vec2 now, vec3 previous, vec2 size) {
     vec2 motion = 0.5 * (now - previous.xy / max(previous.z, 1e-6));
     float speed = length(motion);

@@ -14,8 +14,8 @@ layout(binding = kDetailMapUnit) uniform sampler2D detail_map;         // tangen
 // Slope variance within a texel of a filtered normal map: the more its unit vectors differ, the shorter their mean
 // (Toksvig 2005).
 float slope_variance(vec3 mean) {
-    float share = clamp(length(mean), 0.1, 1.0);
-    return 2.0 * (1.0 - share) / share;
+    float mean_length = clamp(length(mean), 0.1, 1.0);
+    return 2.0 * (1.0 - mean_length) / mean_length;
 }
 
 // Adds the mean of the layers, sum (n.xy strength, n.z).

@@ -11,12 +11,12 @@ const float kThinFoam = 0.4;
 const float kBubbleAlbedo = 0.3;  // of the bubbles below foam, by eye, and their depth [m]
 const float kBubbleDepth = 1.5;
 
-// White share of a pixel at q where foam covers `cover` of the water; `footprint`: side of the pixel [m]. Fades to the
-// cover itself where the pattern is too fine to resolve.
-float foam_share(float cover, vec2 q, float footprint) {
+// White fraction of a pixel at q where foam covers `cover` of the water; `footprint`: side of the pixel [m]. Fades to
+// the cover itself where the pattern is too fine to resolve.
+float foam_coverage(float cover, vec2 q, float footprint) {
     float level = log2(max(footprint * float(textureSize(foam_pattern, 0).x) / kFoamTile, 1.0));
     float stays = textureLod(foam_pattern, q / kFoamTile, level).r;
-    // For values uniformly distributed in 0 .. 1, the mean white share is the cover. Cells smaller than pixels are
+    // For values uniformly distributed in 0 .. 1, the mean white fraction is the cover. Cells smaller than pixels are
     // averaged to gray.
     float edge = min(kFoamEdge, min(cover, 1.0 - cover));
     float blurred = min(0.5 * clamp(0.4 * level - 0.8, 0.0, 1.0), min(stays, 1.0 - stays));
@@ -24,12 +24,12 @@ float foam_share(float cover, vec2 q, float footprint) {
     return clamp((stays - 1.0 + cover + edge) / (2.0 * edge), 0.0, 1.0);
 }
 
-// Adds the bubbles below foam to the light through the surface, `seen`; `falling`: irradiance over pi.
-vec3 with_bubbles(vec3 seen, float cover, vec3 falling, vec3 extinction) {
-    return mix(seen, kBubbleAlbedo * falling * exp(-2.0 * kBubbleDepth * extinction), cover);
+// Adds the bubbles below foam to the light through the surface, `transmitted`; `falling`: irradiance over pi.
+vec3 with_bubbles(vec3 transmitted, float cover, vec3 falling, vec3 extinction) {
+    return mix(transmitted, kBubbleAlbedo * falling * exp(-2.0 * kBubbleDepth * extinction), cover);
 }
 
 // Adds foam on the surface.
 vec3 with_foam(vec3 color, float cover, vec2 q, float footprint, vec3 falling) {
-    return mix(color, kFoamAlbedo * falling, mix(kThinFoam, 1.0, cover) * foam_share(cover, q, footprint));
+    return mix(color, kFoamAlbedo * falling, mix(kThinFoam, 1.0, cover) * foam_coverage(cover, q, footprint));
 }

@@ -8,9 +8,9 @@ vec3 water_extinction(WaterRecord water) {
     return water.absorption.rgb + water.scattering.rgb;
 }
 
-// Downwelling irradiance over pi just below the surface, from lights and environment. Light number `sun` is scaled by
-// `share`, relative to flat water.
-vec3 downwelling_light(WaterRecord water, int sun, float share) {
+// Downwelling irradiance over pi just below the surface, from lights and environment. Light number `sun` is multiplied
+// by `scale`, its intensity relative to flat water.
+vec3 downwelling_light(WaterRecord water, int sun, float scale) {
     vec3 sum = irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
@@ -19,7 +19,7 @@ vec3 downwelling_light(WaterRecord water, int sun, float share) {
         vec3 to_light = texelFetch(lights, n * int(kLightTexels)).xyz;
         vec3 irradiance = texelFetch(lights, n * int(kLightTexels) + 1).rgb;
         float down = max(to_light.y, 0.0);
-        sum += irradiance * (n == sun ? share : 1.0) * (down * (1.0 - fresnel(down, water.shape.w)) / kPi);
+        sum += irradiance * (n == sun ? scale : 1.0) * (down * (1.0 - fresnel(down, water.shape.w)) / kPi);
     } while (++n < directional);
 #endif
     return sum;

@@ -12,15 +12,15 @@ const int kByAngle = 2;
 const int kScreenReflection = 0;
 const int kPlanarReflection = 2;
 
-// Reflectance of a water surface, seen from above or below.
-float water_share(WaterRecord water, bool above, float cosine) {
-    float share = fresnel(cosine, above ? water.shape.w : 1.0 / water.shape.w);
+// Reflectance of a water surface, from above or below.
+float water_reflectance(WaterRecord water, bool above, float cosine) {
+    float reflectance = fresnel(cosine, above ? water.shape.w : 1.0 / water.shape.w);
 #ifdef LOOKS
     int how = int(water.scattering.w) & 3;
-    share = above && how == kSchlick ? fresnel_schlick(cosine, water.shape.w) : share;
-    share = above && how == kByAngle ? fresnel_tso_barsky(cosine) : share;
+    reflectance = above && how == kSchlick ? fresnel_schlick(cosine, water.shape.w) : reflectance;
+    reflectance = above && how == kByAngle ? fresnel_tso_barsky(cosine) : reflectance;
 #endif
-    return share;
+    return reflectance;
 }
 
 int reflection_of(WaterRecord water) {
@@ -52,8 +52,8 @@ vec3 planar_reflection(WaterRecord water, vec3 position, vec3 away, float alpha)
     vec2 uv = straight;
     float path = kFarAway;
     for (int i = 0; i < kPlanarSteps; ++i) {
-        float seen = textureLod(reflection_map, vec2(uv.x, 1.0 - uv.y), 0.0).w;
-        path = seen > 0.0 ? clamp((seen - from.z) / max(along.z, 1e-3), 0.0, kFarAway) : kFarAway;
+        float mirrored = textureLod(reflection_map, vec2(uv.x, 1.0 - uv.y), 0.0).w;
+        path = mirrored > 0.0 ? clamp((mirrored - from.z) / max(along.z, 1e-3), 0.0, kFarAway) : kFarAway;
         vec3 clip = from + path * along;
         uv = 0.5 + 0.5 * clip.xy / max(clip.z, 1e-6);
     }

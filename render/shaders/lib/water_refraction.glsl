@@ -10,7 +10,7 @@
 const int kTracedRefraction = 0;
 const int kShiftedRefraction = 1;
 const int kFloorRefraction = 2;
-const float kShift = 0.02;  // share of the image, for a horizontal normal
+const float kShift = 0.02;  // fraction of the image, for a horizontal normal
 
 #ifdef FLOOR_MAP
 layout(binding = kFloorMapUnit) uniform sampler2D floor_map;  // repeats
@@ -30,7 +30,7 @@ RayHit floor_refraction(WaterRecord water, vec3 position, vec3 bent) {
 #endif
 
 #ifdef LOOKS
-// The image, offset by the tilt of the normal; never what is in front of the water or above it (Vlachos et al. 2004).
+// The image, offset by the tilt of the normal; never surfaces in front of the water or above it (Vlachos et al. 2004).
 RayHit shifted_refraction(WaterRecord water, vec3 position, vec3 normal) {
     float here = dot(position - view.camera_ws.xyz, view.ray_forward.xyz);
     vec2 lean = vec2(dot(normal.xz, view.ray_right.xz) / length(view.ray_right.xyz), dot(normal.xz, view.ray_forward.xz));

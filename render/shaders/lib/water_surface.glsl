@@ -47,13 +47,14 @@ vec4 ripples_at(WaterRecord water, vec2 q) {
 
 #ifdef OCEAN
 // Texture coordinates in a patch: point 0 is the center of texel 0.
-vec3 ocean_place(WaterRecord water, int i, vec2 q) {
+vec3 ocean_patch_uv(WaterRecord water, int i, vec2 q) {
     return vec3(q * water.patches[i] + 0.5 / water.ocean.z, water.ocean.x + float(i));
 }
 #endif
 
-// Amplitude share of wave number k that points `spacing` [m] apart can resolve: 0 below two points per wave.
-float wave_share(float k, float spacing) {
+// Fraction of the amplitude of waves of wave number k that points `spacing` [m] apart resolve: 0 below two points per
+// wave.
+float resolved_fraction(float k, float spacing) {
     return 1.0 - smoothstep(0.25, 0.5, spacing * k * 0.159154943);
 }
 
@@ -70,31 +71,31 @@ struct WaterMotion {
     WaterBend bend;
 };
 
-// Adds a wave with straight crests, current or in the previous frame (`previous`); `there`: 1, or 0: no wave.
-void add_line(inout WaterMotion motion, int line, float there, vec2 q, float spacing, bool previous) {
+// Adds a wave with straight crests, current or in the previous frame (`previous`); `exists`: 0 or 1.
+void add_line(inout WaterMotion motion, int line, float exists, vec2 q, float spacing, bool previous) {
     vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
     vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
     float k = length(run.xy);
-    float share = there * wave_share(k, spacing);
+    float amplitude = exists * resolved_fraction(k, spacing);
     float phase = dot(run.xy, q) + (previous ? wave.y : wave.x);
     float s = sin(phase);
     float c = cos(phase);
     float lean = s > 0.0 ? wave.w : 0.0;
     float leaning = phase - lean * s;
-    motion.offset += share * vec3(run.z * c, wave.z * sin(leaning), run.w * c);
-    vec3 by_phase = share * vec3(-run.z * s, wave.z * cos(leaning) * (1.0 - lean * c), -run.w * s);
+    motion.offset += amplitude * vec3(run.z * c, wave.z * sin(leaning), run.w * c);
+    vec3 by_phase = amplitude * vec3(-run.z * s, wave.z * cos(leaning) * (1.0 - lean * c), -run.w * s);
     motion.bend.by_x += run.x * by_phase;
     motion.bend.by_z += run.y * by_phase;
-    motion.bend.variance += (there - share * share) * 0.5 * wave.z * wave.z * k * k;
+    motion.bend.variance += (exists - amplitude * amplitude) * 0.5 * wave.z * wave.z * k * k;
 }
 
 // Adds a wave around a point.
-void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spacing, bool previous) {
-    vec4 place = texelFetch(wave_rings, ring * int(kWaveRingTexels));
+void add_ring(inout WaterMotion motion, int ring, float exists, vec2 q, float spacing, bool previous) {
+    vec4 circle = texelFetch(wave_rings, ring * int(kWaveRingTexels));
     vec4 wave = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 1);
     vec4 fade = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 2);
-    vec2 edges = place.zw + (previous ? fade.z : 0.0);
-    vec2 out_from = q - place.xy;
+    vec2 edges = circle.zw + (previous ? fade.z : 0.0);
+    vec2 out_from = q - circle.xy;
     float r = max(length(out_from), 1e-6);
     float rate = fade.y > 0.5 ? kPi / max(edges.y - edges.x, 1e-6) : 0.0;
     float u = rate * (r - edges.x);
@@ -105,7 +106,7 @@ void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spa
     float faded = fading ? sqrt(fade.x / r) : 1.0;
     float phase = wave.z * r + (previous ? wave.y : wave.x);
     float height = sin(phase);
-    float size = r >= edges.x && r <= edges.y ? there * wave.w * wave_share(wave.z, spacing) * faded : 0.0;
+    float size = r >= edges.x && r <= edges.y ? exists * wave.w * resolved_fraction(wave.z, spacing) * faded : 0.0;
     motion.offset.y += size * window * height;
     float slope = size * (wave.z * cos(phase) * window + height * window_slope
                           - height * window * (fading ? 0.5 / r : 0.0));
@@ -120,15 +121,15 @@ WaterMotion wave_motion(WaterRecord water, vec2 q, float spacing, bool previous)
     // nothing.
     int line = min(int(water.waves.x), textureSize(wave_lines) / int(kWaveLineTexels) - 1);
     int end = line + int(water.waves.y);
-    float there = water.waves.y > 0.0 ? 1.0 : 0.0;
+    float exists = water.waves.y > 0.0 ? 1.0 : 0.0;
     do {
-        add_line(motion, line, there, q, spacing, previous);
+        add_line(motion, line, exists, q, spacing, previous);
     } while (++line < end);
     int ring = min(int(water.waves.z), textureSize(wave_rings) / int(kWaveRingTexels) - 1);
     end = ring + int(water.waves.w);
-    there = water.waves.w > 0.0 ? 1.0 : 0.0;
+    exists = water.waves.w > 0.0 ? 1.0 : 0.0;
     do {
-        add_ring(motion, ring, there, q, spacing, previous);
+        add_ring(motion, ring, exists, q, spacing, previous);
     } while (++ring < end);
     return motion;
 }
@@ -138,14 +139,14 @@ vec3 field_offset(WaterRecord water, vec2 q, float spacing, bool previous) {
     vec3 offset = vec3(0.0);
 #ifdef OCEAN
     int patches = int(water.ocean.y);
-    float there = patches > 0 ? 1.0 : 0.0;
+    float exists = patches > 0 ? 1.0 : 0.0;
     int i = 0;
     do {
-        vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
+        vec3 uv = patches > 0 ? ocean_patch_uv(water, i, q) : vec3(0.0);
         float level = log2(max(spacing * water.patches[i] * water.ocean.z, 1.0));
-        offset += there
-                  * (previous ? textureLod(previous_ocean_shift, place, level)
-                              : textureLod(ocean_shift, place, level)).xyz;
+        offset += exists
+                  * (previous ? textureLod(previous_ocean_shift, uv, level)
+                              : textureLod(ocean_shift, uv, level)).xyz;
     } while (++i < patches);
 #endif
     vec4 ripples = ripples_at(water, q);
@@ -164,16 +165,16 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
 #ifdef OCEAN
     int patches = int(water.ocean.y);
     int i = 0;
-    float there = patches > 0 ? 1.0 : 0.0;
+    float exists = patches > 0 ? 1.0 : 0.0;
     // Tests after its body, see add_directional().
     do {
-        vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
+        vec3 uv = patches > 0 ? ocean_patch_uv(water, i, q) : vec3(0.0);
         float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
-        vec4 slope = textureLod(ocean_slope, place, level);
-        vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
-        bend.by_x += there * vec3(slope.z, slope.x, cross_foam.x);
-        bend.by_z += there * vec3(cross_foam.x, slope.y, slope.w);
-        bend.foam += there * cross_foam.y;
+        vec4 slope = textureLod(ocean_slope, uv, level);
+        vec2 cross_foam = textureLod(ocean_foam, uv, level).xy;
+        bend.by_x += exists * vec3(slope.z, slope.x, cross_foam.x);
+        bend.by_z += exists * vec3(cross_foam.x, slope.y, slope.w);
+        bend.foam += exists * cross_foam.y;
         bend.variance += water.variance[i] * clamp(level * 0.3, 0.0, 1.0);
     } while (++i < patches);
     bend.foam = min(bend.foam, 1.0);

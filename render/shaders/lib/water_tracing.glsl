@@ -8,16 +8,16 @@ layout(binding = kBehindWaterDepthUnit) uniform sampler2D behind_depth;
 layout(binding = kHighestWaterUnit) uniform sampler2D highest_surfaces;  // water_columns.frag
 
 // Of reflected rays.
-const float kMirrorStep = 10.0;       // [px] on average; what is narrower may be missed
+const float kMirrorStep = 10.0;       // [px] on average; narrower objects may be missed
 const float kMinMirrorSteps = 10.0;
 const float kMaxMirrorSteps = 48.0;
-const float kMirrorReach = 2000.0;    // [m]
+const float kMirrorDistance = 2000.0; // maximum length of a ray [m]
 const int kMaxClearTiles = 64;
-const float kMirrorThickness = 0.2;   // of what they meet, relative to the path, by eye
+const float kMirrorThickness = 0.2;   // of the surfaces they hit, relative to the path, by eye
 const int kBendSteps = 8;
-const float kOpenReach = 150.0;       // of refracted rays over no ground: what is met farther down is lost in the water [m]
-// Once they have met something, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel goes on as long as the
-// loop of a neighbor runs.
+const float kOpenDistance = 150.0;    // of refracted rays in pixels without ground: farther hits are ignored [m]
+// After a hit, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel iterates as long as the loop of a neighbor
+// runs.
 #ifdef FROM_BELOW
 const int kHalvings = 7;  // total internal reflection would show steps
 #else
@@ -79,74 +79,76 @@ float blocking_nearness(vec2 pixel, Side side) {
     return near > 0.0 && side.up * up > 0.0 ? near : 1.0 / kInfiniteDistance;
 }
 
-// How far a ray from `from` [px] along the image goes, in units of `along` and up to `end`, through tiles without
-// anything above the level of a side that is above water. One that goes up leaves a column of such tiles at once.
-float clear_way(vec2 from, vec2 along, float end, Side side) {
+// Empty-space skipping: distance, in units of `along` and up to `end`, that a ray from `from` [px] crosses the image
+// through tiles with nothing above water level, for a side above the water. An ascending ray skips a column of such
+// tiles at once.
+float clear_distance(vec2 from, vec2 along, float end, Side side) {
     vec2 slope = mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
     vec2 inverse = 1.0 / slope;
     vec2 beyond = step(0.0, slope) + 1e-3 * sign(slope);  // the next tile [tiles]
     ivec2 last = textureSize(highest_surfaces, 0) - 1;
-    float way = 0.0;
+    float path = 0.0;
     bool is_clear;
     int tiles = 0;
     do {
-        ivec2 tile = clamp(ivec2(from + way * along) / kHighestTile, ivec2(0), last);
+        ivec2 tile = clamp(ivec2(from + path * along) / kHighestTile, ivec2(0), last);
         vec2 highest = texelFetch(highest_surfaces, tile, 0).rg;  // in the tile, and in it and those above it
         is_clear = side.up > 0.0 && highest.x <= side.level;
         vec2 leaving = ((vec2(tile) + beyond) * float(kHighestTile) - from) * inverse;
         float next = along.y > 0.0 && highest.y <= side.level ? leaving.x : min(leaving.x, leaving.y);
-        way = is_clear ? max(way, next) : way;
-    } while (is_clear && way < end && ++tiles < kMaxClearTiles);
-    return min(way, end);
+        path = is_clear ? max(path, next) : path;
+    } while (is_clear && path < end && ++tiles < kMaxClearTiles);
+    return min(path, end);
 }
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
-// distance. The ray is followed in the image, where pixels and the reciprocal of the distance are linear, up to where it
-// leaves the screen; steps grow from the first tile on in which anything is above the water.
+// distance. The ray is marched in the image, where pixels and the reciprocal of the distance are linear, until it
+// leaves the screen; steps grow from the first tile with anything above the water.
 RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
     vec2 along = ray.along.xy - ray.along.z * from;  // pixel = from + u * along, with u = path / distance
     vec2 room = mix(view.size.xy - 1.0 - from, 1.0 - from, lessThan(along, vec2(0.0)));
     vec2 leaving = room / mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
-    float reach = ray.along.z < 0.0 ? min(kMirrorReach, -0.95 * ray.from.z / ray.along.z) : kMirrorReach;
-    float u_reach = reach / (ray.from.z + reach * ray.along.z);
-    float u_end = max(min(u_reach, min(leaving.x, leaving.y)), 0.0);
-    float u_begin = clear_way(from, along, u_end, side);
+    float max_path = ray.along.z < 0.0 ? min(kMirrorDistance, -0.95 * ray.from.z / ray.along.z) : kMirrorDistance;
+    float u_max = max_path / (ray.from.z + max_path * ray.along.z);
+    float u_end = max(min(u_max, min(leaving.x, leaving.y)), 0.0);
+    float u_begin = clear_distance(from, along, u_end, side);
     float rest = u_end - u_begin;
     float count = rest > 0.0 ? ceil(clamp(rest * length(along) / kMirrorStep, kMinMirrorSteps, kMaxMirrorSteps)) : 1.0;
     float low = u_begin;
     float high = u_begin;
     float inverse_from = 1.0 / ray.from.z;
     float z = ray.from.z / (1.0 - u_begin * ray.along.z);
-    float ahead = 1.0;  // reciprocal distances of the ray and of what is seen, apart: at low
+    float ahead = 1.0;  // difference of the reciprocal distances of ray and surface: at low
     float behind;       // and at high
     bool met = false;
     float step = 0.0;
     do {
-        float share = min(++step / count, 1.0);
-        high = met ? high : u_begin + rest * share * (0.3 + 0.7 * share);
-        float seen = blocking_nearness(from + high * along, side);
-        // What it passes far behind does not stop it. Under water, where no sky can take its place, anything does.
-        bool near = side.up < 0.0 || (z - kMirrorThickness * low * z - 0.05) * seen < 1.0;
+        float fraction = min(++step / count, 1.0);
+        high = met ? high : u_begin + rest * fraction * (0.3 + 0.7 * fraction);
+        float surface = blocking_nearness(from + high * along, side);
+        // A surface that it passes far behind does not stop it; under water, where there is no sky to fall back to, any
+        // does.
+        bool near = side.up < 0.0 || (z - kMirrorThickness * low * z - 0.05) * surface < 1.0;
         float nearness = (1.0 - high * ray.along.z) * inverse_from;
         z = 1.0 / nearness;
-        behind = seen - nearness;
+        behind = surface - nearness;
         met = met || (near && behind > 0.0);
         ahead = met ? ahead : -behind;
         low = met ? low : high;
     } while (!met && step < count);
-    // It went behind something between the last two steps: bisect, and assume a plane between the last two points unless
-    // they are on different surfaces.
+    // It passed behind a surface in the last step: bisect, and assume a plane between the last two points unless they
+    // are on different surfaces.
     int steps = 0;
     do {
-        float middle = 0.5 * (low + high);
-        float apart = blocking_nearness(from + middle * along, side) - (1.0 - middle * ray.along.z) * inverse_from;
+        float midpoint = 0.5 * (low + high);
+        float apart = blocking_nearness(from + midpoint * along, side) - (1.0 - midpoint * ray.along.z) * inverse_from;
         bool hidden = apart > 0.0;
         ahead = hidden ? ahead : -apart;
         behind = hidden ? apart : behind;
-        low = hidden ? low : middle;
-        high = hidden ? middle : high;
+        low = hidden ? low : midpoint;
+        high = hidden ? midpoint : high;
     } while (met && ++steps < kHalvings);
     float u = !met ? u_end : ahead < 8.0 * behind ? mix(low, high, ahead / (ahead + behind)) : high;
     z = ray.from.z / (1.0 - u * ray.along.z);
@@ -160,15 +162,15 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
                   * clamp(2.0 - gap / (kMirrorThickness * path + 0.05), 0.0, 1.0);
     trust = !met ? 0.0 : side.up > 0.0 ? trust : 1.0;
 #ifdef FROM_BELOW
-    // Under water no sky can take its place: continue the pixel where the ray leaves the screen.
-    if (side.up < 0.0 && !met && u_end < u_reach) {
+    // Under water there is no sky to fall back to: extend the pixel where the ray leaves the screen.
+    if (side.up < 0.0 && !met && u_end < u_max) {
         // If something above the water is there, follow it down into the water.
-        float seen = distance_at(hit);
-        float over = max(height_of(hit, seen) - side.level + 0.2, 0.0);
-        hit.y -= seen > 0.0 ? over / (seen * 2.0 * view.size.w * max(view.ray_up.y, 1e-3)) : 0.0;
+        float surface = distance_at(hit);
+        float over = max(height_of(hit, surface) - side.level + 0.2, 0.0);
+        hit.y -= surface > 0.0 ? over / (surface * 2.0 * view.size.w * max(view.ray_up.y, 1e-3)) : 0.0;
         hit = clamp_to_screen(hit);
-        seen = distance_at(hit);
-        if (seen > 0.0 && height_of(hit, seen) < side.level) {
+        surface = distance_at(hit);
+        if (surface > 0.0 && height_of(hit, surface) < side.level) {
             return RayHit(radiance_at(hit), path);
         }
     }
@@ -176,50 +178,50 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     return RayHit(mix(around, color, trust), trust > 0.5 ? path : kInfiniteDistance);
 }
 
-// Hit of a refracted ray on screen: steps until it is behind something, then bisection; a single step `downward` from
-// pixels without ground, where it may only meet what stands in the water. Surfaces in front of the water are ignored.
-// `max_distance`: distance after which a hit is certain [m].
+// Hit of a refracted ray on screen: steps until it is behind a surface, then bisection; a single step if it goes
+// `downward` from a pixel without ground, where it can only hit objects in the water. Surfaces in front of the water
+// are ignored. `max_distance`: distance after which a hit is certain [m].
 RayHit trace_refraction(vec3 position, vec3 direction, float max_distance, bool downward) {
     vec2 pixel = gl_FragCoord.xy;
     ScreenRay ray = screen_ray(position, direction);
     float here = ray.from.z;
     float straight = distance_at(pixel);
     float path = straight > 0.0 ? (straight - here) * length(view_ray(pixel)) : kInfiniteDistance;
-    // Rays that approach the screen edge are bent less, from half way on, so that the edge is not smeared.
+    // Rays that approach the screen edge are bent less, from halfway on, so that the edge is not smeared.
     vec2 shift = ray_point(ray, min(path, max_distance)).xy - pixel;
     vec2 room = mix(view.size.xy - pixel, pixel, lessThan(shift, vec2(0.0)));
-    vec2 shares = room / max(2.0 * abs(shift), vec2(1e-6));
-    direction = normalize(mix(normalize(position - view.camera_ws.xyz), direction, min(min(shares.x, shares.y), 1.0)));
+    vec2 scale = room / max(2.0 * abs(shift), vec2(1e-6));
+    direction = normalize(mix(normalize(position - view.camera_ws.xyz), direction, min(min(scale.x, scale.y), 1.0)));
     ray = screen_ray(position, direction);
     bool open = downward && straight <= 0.0;
-    float reach = min(max_distance, open ? kOpenReach : min(3.0 * path + 0.5, kInfiniteDistance));
+    float max_path = min(max_distance, open ? kOpenDistance : min(3.0 * path + 0.5, kInfiniteDistance));
     int count = open ? 1 : kBendSteps;
     float low = 0.0;
-    float high = reach;
+    float high = max_path;
     vec2 shown = pixel;  // the last pixel on the ray that nothing in front of the water covers
     bool met = false;
     int steps = 0;
     do {
-        float share = float(steps + 1) / float(count);
-        high = met ? high : reach * share * share;
+        float fraction = float(steps + 1) / float(count);
+        high = met ? high : max_path * fraction * fraction;
         vec3 at = ray_point(ray, high);
         pixel = clamp_to_screen(at.xy);
-        float seen = distance_at(pixel);
-        shown = seen > here ? pixel : shown;
-        met = seen > here && seen < at.z;
+        float surface = distance_at(pixel);
+        shown = surface > here ? pixel : shown;
+        met = surface > here && surface < at.z;
         low = met ? low : high;
     } while (!met && ++steps < count);
     steps = 0;
     do {
-        float middle = 0.5 * (low + high);
-        vec3 at = ray_point(ray, middle);
-        float seen = distance_at(clamp_to_screen(at.xy));
-        bool hidden = met && seen > here && seen < at.z;
-        low = hidden ? low : middle;
-        high = hidden ? middle : high;
+        float midpoint = 0.5 * (low + high);
+        vec3 at = ray_point(ray, midpoint);
+        float surface = distance_at(clamp_to_screen(at.xy));
+        bool hidden = met && surface > here && surface < at.z;
+        low = hidden ? low : midpoint;
+        high = hidden ? midpoint : high;
     } while (met && ++steps < kHalvings);
     pixel = clamp_to_screen(ray_point(ray, high).xy);
     shown = distance_at(pixel) > here ? pixel : shown;
-    bool unbounded = straight <= 0.0 && high >= reach;
+    bool unbounded = straight <= 0.0 && high >= max_path;
     return RayHit(radiance_at(shown), unbounded ? kInfiniteDistance : high);
 }

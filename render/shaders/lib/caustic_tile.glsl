@@ -2,38 +2,38 @@
 
 #include "caustics_gpu.h"
 
-layout(binding = kWaterLightsUnit) uniform samplerBuffer water_lights;  // WaterLightHeader, UnderwaterRecord, MirrorRecord, CausticPlace
+layout(binding = kWaterLightsUnit) uniform samplerBuffer water_lights;  // WaterLightHeader, UnderwaterRecord, MirrorRecord, CausticTile
 layout(binding = kCausticMapsUnit) uniform sampler2D caustic_maps;      // light relative to that under flat water
 
-CausticPlace caustic_place(int index) {
+CausticTile caustic_tile(int index) {
     vec4 counts = texelFetch(water_lights, 0);
     int first = int(kHeaderTexels) + int(counts.x) * int(kUnderwaterTexels) + int(counts.y) * int(kMirrorTexels)
-                + index * int(kPlaceTexels);
-    return CausticPlace(
+                + index * int(kCausticTileTexels);
+    return CausticTile(
         texelFetch(water_lights, first), texelFetch(water_lights, first + 1), texelFetch(water_lights, first + 2));
 }
 
 // Samples the map at uv in 0 .. 1.
-float caustic_texel(CausticPlace place, vec2 uv) {
-    vec2 texel = place.rect.xy + clamp(uv * place.rect.z, 0.5, place.rect.z - 0.5);
+float caustic_texel(CausticTile tile, vec2 uv) {
+    vec2 texel = tile.rect.xy + clamp(uv * tile.rect.z, 0.5, tile.rect.z - 0.5);
     return textureLod(caustic_maps, texel / vec2(textureSize(caustic_maps, 0)), 0.0).r;
 }
 
 const float kPathBias = 2e-3;
 
-// Share of a map's light that is unoccluded up to `length` [m] below or above the water. Include after
+// Fraction of a map's light that is unoccluded up to `length` [m] below or above the water. Include after
 // lib/shadow.glsl.
-float path_visibility(CausticPlace place, vec2 uv, float length) {
-    float path = length / place.view.z;
+float path_visibility(CausticTile tile, vec2 uv, float length) {
+    float path = length / tile.view.z;
 #ifdef SHADOW_MAPS
-    vec4 rect = texelFetch(shadow_views, max(int(place.view.x), 0) * int(kShadowViewTexels) + 7);
+    vec4 rect = texelFetch(shadow_views, max(int(tile.view.x), 0) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
     vec2 corner = floor(texel - 0.5);
-    vec2 part = texel - 0.5 - corner;
+    vec2 fraction = texel - 0.5 - corner;
     vec4 depths = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
     vec4 open = vec4(lessThanEqual(depths, vec4(1.0 + kPathBias - path)));
-    float share = mix(mix(open.w, open.z, part.x), mix(open.x, open.y, part.x), part.y);
-    return place.view.x >= 0.0 ? share : 1.0;
+    float visible = mix(mix(open.w, open.z, fraction.x), mix(open.x, open.y, fraction.x), fraction.y);
+    return tile.view.x >= 0.0 ? visible : 1.0;
 #else
     return 1.0;
 #endif
