@@ -148,7 +148,7 @@ Status measure_fakephong_file(const std::string& path, QualityReport& report) {
         }
         report.inform(
             fmt::format("{}: work of a frame over Phong's", one.method->name),
-            work_share(results[0], one));
+            relative_work(results[0], one));
     }
     const EdgePaths paths = edge_paths(scene);
     report.inform("Blinn coordinates along edges, from linear, mean", paths.linear_mean);

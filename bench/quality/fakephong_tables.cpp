@@ -421,8 +421,7 @@ std::string path_section(std::span<const SceneResult> results) {
     }
     return "<h3>Along an edge: paths against polynomials</h3>\n<p>How far the sine and the cosine "
            "of an arc are from the line through its ends, and from the quadratic through its ends "
-           "and center:</p>
-           "
+           "and center:</p>\n"
            + arcs.html()
            + "<p>How far the Blinn coordinates of the normals along an edge are, in the unit disc. "
              "Edges on which a normal points away from H are left out:</p>\n"

@@ -31,7 +31,7 @@ namespace limn::fakephong {
 [[nodiscard]] std::string
 verdict_of(const ShadingMethod& method, std::span<const SceneResult> results);
 /// Work of a frame, set-up included, relative to Phong shading.
-[[nodiscard]] double work_share(const SceneResult& scene, const MethodResult& one);
+[[nodiscard]] double relative_work(const SceneResult& scene, const MethodResult& one);
 [[nodiscard]] bool is_fine(const SceneResult& scene);  ///< more than a thousand facets
 
 }  // namespace limn::fakephong

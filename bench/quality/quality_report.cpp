@@ -91,8 +91,8 @@ std::string number_table(const QualityReport& report) {
 Result<std::string> figure(const QualityImage& image) {
     std::string html = fmt::format(
         "<figure><figcaption>{}</figcaption><div class=\"row\">\n", escape_html(image.title));
-    const auto add = [&html](const ColorImage& image, std::string_view caption) -> Status {
-        const Result<std::string> tag = image_tag(image, caption);
+    const auto add = [&html](const ColorImage& shown, std::string_view caption) -> Status {
+        const Result<std::string> tag = image_tag(shown, caption);
         if (!tag) {
             return tag.error();
         }

@@ -24,7 +24,7 @@ double max_error(const HeadlessRenderer& headless) {
 
 struct MotionStage : QualityScene {
     Entity move(MeshId mesh, const Affine& before, const Affine& now) {
-        const Entity entity = position(mesh, gray, now);
+        const Entity entity = place(mesh, gray, now);
         world.get<PreviousWorldTransform>(entity).world = before;
         return entity;
     }

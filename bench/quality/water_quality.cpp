@@ -400,14 +400,14 @@ void measure_reflections(HeadlessRenderer& headless, QualityReport& report) {
         return image;
     };
     const WaterLook planar = {.reflection = WaterReflection::Planar, .map_scale = 1};
-    const gpu::FloatImage planar =
+    const gpu::FloatImage image =
         measure("still water, planar reflection against a mirrored camera", planar, all, 45);
     measure("the same at half resolution", {.reflection = WaterReflection::Planar}, all, 30);
     measure(
         "screen-space reflection, where the reflected point is on screen", {}, truth.is_on_screen,
         20);
     report.images.push_back(
-        {"still water: planar reflection, mirrored camera", displayed(planar),
+        {"still water: planar reflection, mirrored camera", displayed(image),
          displayed(truth.radiance)});
 }
 

@@ -74,7 +74,7 @@ double deviation(const gpu::FloatImage& image, Reference&& reference) {
 
 struct PlaneScene : Scene {
     explicit PlaneScene(const Material& material = matte({1, 1, 1})) {
-        position(add(make_square()), add(material), at({0, 0, 0}));
+        place(add(make_square()), add(material), at({0, 0, 0}));
     }
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, kSide, kSide); }
     gpu::FloatImage picture() { return radiance(view()); }
@@ -436,7 +436,7 @@ TEST_CASE("light: a light behind a shiny plane adds nothing, at any grazing angl
         Scene scene;
         const Material shiny = {
             .shading = model, .roughness = 0.3f, .specular = {1, 1, 1}, .shininess = 2};
-        scene.position(scene.add(make_square()), scene.add(shiny), at({0, 0, 0}));
+        scene.place(scene.add(make_square()), scene.add(shiny), at({0, 0, 0}));
         scene.shine(PointLight{.intensity = 100}, at({0, 0.8f, -0.1f}));
         for (const float value : scene.radiance(scene.look({0, -1.5f, 0.3f}, {0, 0, 0})).pixels) {
             CHECK((value == 0 || value == 1));  // nothing, or alpha
@@ -556,14 +556,14 @@ TEST_CASE(
 TEST_CASE("light: moving light and plane together changes nothing" * technique("light.point")) {
     const auto picture = [](const Vec3& offset) {
         Scene scene;
-        scene.position(scene.add(make_square()), scene.add(matte({1, 1, 1})), at(offset));
+        scene.place(scene.add(make_square()), scene.add(matte({1, 1, 1})), at(offset));
         scene.shine(PointLight{}, at(offset + Vec3(0.3f, 0.1f, 0.6f)));
         return scene.radiance(scene.look(offset + Vec3(0, 0, 1), offset, kSide, kSide));
     };
     CHECK(largest_difference(picture({0, 0, 0}), picture({8, -4, 16})) <= 2e-2f);
     // One h aside of a light h above the plane the cosine is 0.7071.
     Scene scene;
-    scene.position(scene.add(make_square()), scene.add(matte({1, 1, 1})), at({0, 0, 0}));
+    scene.place(scene.add(make_square()), scene.add(matte({1, 1, 1})), at({0, 0, 0}));
     scene.shine(
         PointLight{.intensity = kPi, .radius = 0, .attenuation = {.falloff = Falloff::None}},
         at({-0.5f, 0, 0.5f}));

@@ -51,7 +51,7 @@ class Row : public Scene {
     }
     void put(const Material& material, std::size_t i) {
         const Vec3 p = {2.5f * static_cast<float>(i) - 6.25f, 0, 0};
-        offsets(square_, add(material), at(p));
+        place(square_, add(material), at(p));
     }
     gpu::FloatImage picture() { return radiance(look({0, 0, 6}, {0, 0, 0}, 192, 64)); }
 

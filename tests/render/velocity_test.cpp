@@ -185,7 +185,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: jitter is no motion") {
     oracle::CameraMotion still = moving_camera();
     still.previous = still.current;
     world.clear();
-    position(add(make_ball(8)), gray, at({0, 0.5f, 0}));
+    place(add(make_ball(8)), gray, at({0, 0.5f, 0}));
     CHECK(fastest(view_of(still, {0.45f, -0.4f})) == 0);
 }
 
@@ -253,7 +253,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(VelocityScene, "velocity: a camera that jumps shows no motion, a fast one does") {
-    position(add(make_ball(8)), gray, at({0, 0.5f, 0}));
+    place(add(make_ball(8)), gray, at({0, 0.5f, 0}));
     oracle::CameraMotion motion = moving_camera();
     CHECK(fastest(view_of(motion)) > 2);
     motion.previous = look_at({0, 0.5f, 11.7f}, {0, 0.5f, 0});
