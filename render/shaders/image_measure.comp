@@ -52,7 +52,7 @@ vec2 clipped_range(float smallest, float largest) {
     while (high > 0 && above + histogram[high] <= outside) {
         above += histogram[high--];
     }
-    return vec2(max(bin_edge(low), least), min(bin_edge(high + 1), largest));
+    return vec2(max(bin_edge(low), smallest), min(bin_edge(high + 1), largest));
 }
 #endif
 
