@@ -37,16 +37,16 @@ void main() {
     vec3 series[6] = series_of(
         corner_normal_ws[1] - corner_normal_ws[0], corner_normal_ws[2] - corner_normal_ws[0],
         (corner_normal_ws[0] + corner_normal_ws[1] + corner_normal_ws[2]) / 3.0);
-    LitPoint centroid = lit_point(mesh_point(vec2(1.0 / 3.0)));
-    vec3 viewer = centroid.reflector.to_camera;
-    float side = dot(centroid.reflector.normal, series[0]) < 0.0 ? -1.0 : 1.0;  // for double-sided surfaces
+    LitPoint center = lit_point(mesh_point(vec2(1.0 / 3.0)));
+    vec3 viewer = center.reflector.to_camera;
+    float side = dot(center.reflector.normal, series[0]) < 0.0 ? -1.0 : 1.0;  // for double-sided surfaces
     vec4 vectors[SINGLE_LIGHTS];
     vec3 irradiances[SINGLE_LIGHTS];
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
         vectors[k] = vec4(0.0);
         irradiances[k] = vec3(0.0);
-        if (k < centroid.single) {
-            Incoming light = single_light(centroid, k);
+        if (k < center.single) {
+            Incoming light = single_light(center, k);
             vec3 sum = light.to_light + viewer;
             vectors[k] = vec4(light.to_light, inversesqrt(max(dot(sum, sum), 1e-8)));
             irradiances[k] = light.irradiance;
