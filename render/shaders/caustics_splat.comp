@@ -16,8 +16,8 @@ layout(std430, binding = kCausticLightBinding) buffer Light {
 };
 uniform int width;  // of the atlas [texels]
 
-const float kMaxRays = 48.0;         // rays along a side of a cell
-const float kPerTexel = 2.0;      // rays along a texel
+const float kMaxRays = 48.0;          // rays along a side of a cell
+const float kPerTexel = 2.0;          // rays along a texel
 const float kMaxRaysMirrored = 12.0;  // waves spread reflected light so far that many cells overlap
 const float kMirroredPerTexel = 1.0;
 

@@ -10,10 +10,10 @@ layout(binding = kDeformControlsUnit) uniform samplerBuffer controls;  // packed
 #include "lib/deformers.glsl"
 #include "lib/surface_patches.glsl"
 
-layout(local_size_x = 64) in;  // kDeformGroup
-layout(binding = kDeformJobsUnit) uniform usamplerBuffer jobs;        // DeformJob
+layout(local_size_x = 64) in;                                              // kDeformGroup
+layout(binding = kDeformJobsUnit) uniform usamplerBuffer jobs;             // DeformJob
 layout(binding = kDeformGroupJobsUnit) uniform usamplerBuffer group_jobs;  // job of each work group
-layout(binding = kDeformRestUnit) uniform usamplerBuffer rest;        // see deform_gpu.h
+layout(binding = kDeformRestUnit) uniform usamplerBuffer rest;             // see deform_gpu.h
 layout(binding = kDeformPalettesUnit) uniform samplerBuffer palettes;
 layout(binding = kDeformWeightsUnit) uniform samplerBuffer weights;
 layout(std430, binding = kDeformPositionsBinding) buffer Positions {

@@ -9,8 +9,8 @@ layout(binding = kFocusNearBaseUnit) uniform sampler2D near_base;
 layout(binding = kFocusBaseRadiiUnit) uniform sampler2D base_radii;
 layout(binding = kFocusTilesUnit) uniform sampler2D focus_tiles;
 
-layout(location = 0) out vec4 far_coarse;   // alpha: its weight in the texel
-layout(location = 1) out vec4 near_coarse;  // alpha: coverage
+layout(location = 0) out vec4 far_coarse;    // alpha: its weight in the texel
+layout(location = 1) out vec4 near_coarse;   // alpha: coverage
 layout(location = 2) out float near_radius;  // [px], times coverage
 
 const int kCell = 4;           // side of a texel [px]

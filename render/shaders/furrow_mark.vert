@@ -17,10 +17,10 @@ uniform float pixels;  // factor of radii
 
 const vec2 kCorners[6] = vec2[](
     vec2(0.0, -1.0), vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(0.0, -1.0), vec2(1.0, 1.0), vec2(1.0, -1.0));
-const float kNear = 1e-4;   // [m]
+const float kNear = 1e-4;      // [m]
 const float kOfSpacing = 0.2;  // maximum radius relative to the spacing of marks; by eye
 const float kMinRadius = 0.5;  // [px]: thinner marks become transparent instead
-const float kLift = 1.006;  // factor of depth, toward the camera: marks lie on faces
+const float kLift = 1.006;     // factor of depth, toward the camera: marks lie on faces
 
 void main() {
     int mark = gl_VertexID / 6;

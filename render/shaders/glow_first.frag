@@ -8,7 +8,7 @@
 
 layout(binding = kSourceUnit) uniform sampler2D scene_radiance;
 
-uniform ivec2 size;         // of the target
+uniform ivec2 size;             // of the target
 uniform float inverse_firefly;  // 1 / luminance of a firefly; 0: no clamp
 
 layout(location = 0) out vec4 passed_on;

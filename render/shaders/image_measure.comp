@@ -18,10 +18,10 @@ layout(std430, binding = kStatisticsBinding) buffer Measure {
 };
 
 uniform int part_count;
-uniform float key;             // log-average after metering; 0: no metering
-uniform float adaptation_blend;          // adaptation step toward this frame's luminance, 0 .. 1
-uniform vec2 adaptation_range;        // luminance range of adaptation
-uniform float clipped_fraction;   // of the pixels at either end of the histogram
+uniform float key;               // log-average after metering; 0: no metering
+uniform float adaptation_blend;  // adaptation step toward this frame's luminance, 0 .. 1
+uniform vec2 adaptation_range;   // luminance range of adaptation
+uniform float clipped_fraction;  // of the pixels at either end of the histogram
 
 shared StatisticsPart joined[256];
 

@@ -7,8 +7,8 @@
 #include "motion_blur_gpu.h"
 
 layout(binding = kSourceUnit) uniform sampler2D radiance;
-layout(binding = kMotionUnit) uniform sampler2D motion_map;  // motion_pack.frag
-layout(binding = kMotionNeighborsUnit) uniform sampler2D neighbors;   // motion_neighbor.frag
+layout(binding = kMotionUnit) uniform sampler2D motion_map;          // motion_pack.frag
+layout(binding = kMotionNeighborsUnit) uniform sampler2D neighbors;  // motion_neighbor.frag
 
 uniform int side;     // of a tile [px]
 uniform int samples;  // along the motion

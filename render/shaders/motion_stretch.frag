@@ -6,9 +6,9 @@
 #include "fullscreen_gpu.h"
 #include "motion_modes_gpu.h"
 
-layout(binding = kSourceUnit) uniform sampler2D radiance;         // of this frame
+layout(binding = kSourceUnit) uniform sampler2D radiance;                     // of this frame
 layout(binding = kPreviousRadianceUnit) uniform sampler2D previous_radiance;  // of the previous frame
-layout(binding = kStretchDepthUnit) uniform sampler2D depth_map;        // of this frame
+layout(binding = kStretchDepthUnit) uniform sampler2D depth_map;              // of this frame
 
 uniform int samples;     // >= 2
 uniform float exposure;  // fraction of the motion

@@ -25,8 +25,8 @@ layout(binding = kNegativeLightsUnit) uniform sampler2DArray negative_lights;
 
 #ifdef VEILED
 layout(binding = kParticleVeilUnit) uniform sampler2D veil;  // depth of the nearest blended surface, 0: none
-uniform int behind;        // 1: pixels behind it; 0: the others
-uniform float resolution;  // of the image, as a fraction of the view's
+uniform int behind;                                          // 1: pixels behind it; 0: the others
+uniform float resolution;                                    // of the image, as a fraction of the view's
 #endif
 
 layout(location = 0) out vec4 radiance;

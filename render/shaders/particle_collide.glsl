@@ -4,8 +4,8 @@
 
 const uint kColliderPlane = 0u, kColliderSphere = 1u, kColliderBox = 2u;
 const uint kBounce = 1u, kStick = 2u, kKill = 3u;  // of the emitter; 0: does not collide
-const float kSkin = 1e-4;       // distance kept from surfaces [m]
-const float kRestSpeed = 0.2;   // impact speed below which there is no rebound [m/s]
+const float kSkin = 1e-4;                          // distance kept from surfaces [m]
+const float kRestSpeed = 0.2;                      // impact speed below which there is no rebound [m/s]
 const int kMaxBounces = 8;
 
 struct GpuCollider {

@@ -3,8 +3,8 @@
 #include "lib/particle.glsl"
 
 layout(binding = kParticleShadowUnit) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
-uniform int first;         // of the particles to draw
-uniform vec3 light_right;  // unit, along the map's columns and rows
+uniform int first;                                                            // of the particles to draw
+uniform vec3 light_right;                                                     // unit, along the map's columns and rows
 uniform vec3 light_up;
 
 layout(location = 0) out vec2 corner;

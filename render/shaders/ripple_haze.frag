@@ -9,9 +9,9 @@ layout(binding = kDepthUnit) uniform sampler2D scene_depth;
 
 uniform mat4 local_from_world;  // half-extent 1
 uniform bool is_ball;
-uniform float max_shift;    // largest shift [px]
-uniform float scale;   // of an eddy [m]
-uniform float raised;  // distance by which the air has risen [eddies]
+uniform float max_shift;  // largest shift [px]
+uniform float scale;      // of an eddy [m]
+uniform float raised;     // distance by which the air has risen [eddies]
 uniform uint seed;
 
 layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read

@@ -16,10 +16,10 @@ uniform float divider;      // of the width; negative: none
 uniform int curves;         // 1: of the left image only
 uniform mat4 left_label;    // glyphs of lib/small_text.glsl, three in each number, lowest byte first
 uniform mat4 right_label;
-uniform ivec2 label_lengths;  // left, right; without a divider only the left one, centered
-uniform int columns;              // of the same width, each with a name; 0: none
-uniform vec2 column_borders;      // of the first and the last, 0 .. 1 of the width
-uniform mat4 column_labels_low;   // of the first four, then of the others, as left_label
+uniform ivec2 label_lengths;     // left, right; without a divider only the left one, centered
+uniform int columns;             // of the same width, each with a name; 0: none
+uniform vec2 column_borders;     // of the first and the last, 0 .. 1 of the width
+uniform mat4 column_labels_low;  // of the first four, then of the others, as left_label
 uniform mat4 column_labels_high;
 uniform vec4 column_lengths_low;
 uniform vec4 column_lengths_high;

@@ -17,11 +17,11 @@ uniform int has_history;
 layout(location = 0) out vec4 resolved;
 layout(location = 1) out vec2 resolved_moments;
 
-const float kStill = 0.02;          // motion less than this [px] is rounding
-const float kMaxFramesStill = 32.0;      // maximum frames in history for static pixels
-const float kMaxFramesMoving = 10.0;     // and for moving ones, as resampling softens
-const float kSpread = 1.0;          // clamp of history [standard deviations of the neighborhood] for moving pixels
-const float kSpreadStill = 2.0;     // and for static ones, plus its temporal deviation, as thin objects come and go
+const float kStill = 0.02;            // motion less than this [px] is rounding
+const float kMaxFramesStill = 32.0;   // maximum frames in history for static pixels
+const float kMaxFramesMoving = 10.0;  // and for moving ones, as resampling softens
+const float kSpread = 1.0;            // clamp of history [standard deviations of the neighborhood] for moving pixels
+const float kSpreadStill = 2.0;       // and for static ones, plus its temporal deviation, as thin objects come and go
                                     // with the jitter
 
 vec3 to_ycocg(vec3 c) {

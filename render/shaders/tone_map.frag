@@ -11,12 +11,12 @@ layout(std140, binding = kToneMeasureBinding) uniform Measure {
     ImageStatistics measure;
 };
 
-uniform float exposure;      // 2^ev
-uniform float defog;         // fraction of the mean color to subtract
-uniform float inverse_white;     // Reinhard: 1 / luminance shown as 1
-uniform float contrast;      // Knee
-uniform float gamma;         // Knee, or instead of sRGB; 0 = sRGB
-uniform float dither_codes;  // amplitude
+uniform float exposure;       // 2^ev
+uniform float defog;          // fraction of the mean color to subtract
+uniform float inverse_white;  // Reinhard: 1 / luminance shown as 1
+uniform float contrast;       // Knee
+uniform float gamma;          // Knee, or instead of sRGB; 0 = sRGB
+uniform float dither_codes;   // amplitude
 
 const float kMaxExposed = 1e6;     // white with any curve, and far from overflow
 const float kKneeScale = 0.3333;   // of codes: linear 1 lies some 3.5 stops below white, as in exrdisplay
@@ -24,7 +24,7 @@ const float kKneeScale = 0.3333;   // of codes: linear 1 lies some 3.5 stops bel
 layout(location = 0) out vec4 display;
 
 #if TONE_CURVE == 4
-layout(binding = kLocalFineUnit) uniform sampler2D local_fine;    // luminance blurred with scales 0 .. 3
+layout(binding = kLocalFineUnit) uniform sampler2D local_fine;      // luminance blurred with scales 0 .. 3
 layout(binding = kLocalMediumUnit) uniform sampler2D local_medium;  // 4 .. 7
 layout(binding = kLocalCoarseUnit) uniform sampler2D local_coarse;  // 8, 9
 

@@ -26,8 +26,8 @@ layout(location = 1) out uvec4 surface;
 #endif
 layout(location = 0) out vec4 radiance;
 
-const float kSmooth = 1e-5;  // minimum slope variance, for ripples that are not modeled
-const float kSurfaceTransmittance = 0.54;    // transmittance of the surface for upwelling radiance (Mobley 1999)
+const float kSmooth = 1e-5;                // minimum slope variance, for ripples that are not modeled
+const float kSurfaceTransmittance = 0.54;  // transmittance of the surface for upwelling radiance (Mobley 1999)
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);

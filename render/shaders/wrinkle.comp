@@ -8,10 +8,10 @@
 #include "lib/wrinkle.glsl"
 #include "wrinkle_gpu.h"
 
-layout(local_size_x = 64) in;  // kWrinkleGroup
-layout(binding = kWrinkleJobsUnit) uniform usamplerBuffer jobs;        // WrinkleJob
+layout(local_size_x = 64) in;                                            // kWrinkleGroup
+layout(binding = kWrinkleJobsUnit) uniform usamplerBuffer jobs;          // WrinkleJob
 layout(binding = kWrinkleGroupsUnit) uniform usamplerBuffer group_jobs;  // job of each work group
-layout(binding = kWrinkleRestUnit) uniform usamplerBuffer rest;        // see wrinkle_gpu.h
+layout(binding = kWrinkleRestUnit) uniform usamplerBuffer rest;          // see wrinkle_gpu.h
 layout(std430, binding = kWrinklePositionsBinding) readonly buffer Positions {
     float positions[];
 };

@@ -4,7 +4,7 @@
 
 const uvec3 kBlockSize = uvec3(kBlockColumns, kBlockRows, kBlockSlices);
 const float kMaxDistance = 1e12;  // [m]; end of the last slice, which is unbounded
-const float kSlack = 1e-3;     // relative enlargement of cells, as log2 and exp2 differ in the last bits
+const float kSlack = 1e-3;        // relative enlargement of cells, as log2 and exp2 differ in the last bits
 
 uvec3 cell_counts() {
     return uvec3(view.grid_cells.xyz);

@@ -88,7 +88,7 @@ uint pack_rgb9e5(vec3 color) {
     float peak = max(color.r, max(color.g, color.b));
     // The exponent bits of the peak, raised by one when its nine-bit mantissa would round up to 512.
     uint bits = floatBitsToUint(peak * (1.0 + 1.0 / 1024.0));
-    int exponent = max(int(bits >> 23) - 127, -16) + 16;           // 0 .. 31
+    int exponent = max(int(bits >> 23) - 127, -16) + 16;                   // 0 .. 31
     float scale = uintBitsToFloat(uint(127 - (exponent - 15 - 9)) << 23);  // 2^-(exponent - 15 - 9)
     uvec3 m = min(uvec3(color * scale + 0.5), uvec3(511u));
     return m.r | m.g << 9 | m.b << 18 | uint(exponent) << 27;

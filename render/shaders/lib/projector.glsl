@@ -5,7 +5,7 @@
 #include "projector_gpu.h"
 
 layout(binding = kProjectorImagesUnit) uniform sampler2DArray projector_images;  // linear, with mip levels
-layout(binding = kProjectorsUnit) uniform samplerBuffer projectors;         // ProjectorRecord
+layout(binding = kProjectorsUnit) uniform samplerBuffer projectors;              // ProjectorRecord
 
 // Color filter of cookie `number` (from 1; 0 is none) for light at `position_ws`.
 vec3 projected_color(float number, vec3 position_ws) {

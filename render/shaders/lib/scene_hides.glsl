@@ -3,7 +3,7 @@
 #include "furrow_gpu.h"
 
 layout(binding = kFurrowSceneUnit) uniform sampler2D scene_depth;  // reversed: near / distance
-uniform int has_scene;                              // 0: no depth test
+uniform int has_scene;                                             // 0: no depth test
 
 const float kSceneSlack = 1.01;  // relative to the distance: the scene contains the surface itself, drawn with jitter
 

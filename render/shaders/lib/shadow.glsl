@@ -20,7 +20,7 @@
 #include "lib/noise.glsl"
 #include "shadow_gpu.h"
 
-layout(binding = kShadowAtlasUnit) uniform sampler2D shadow_atlas;     // reversed depth, 0 where empty
+layout(binding = kShadowAtlasUnit) uniform sampler2D shadow_atlas;      // reversed depth, 0 where empty
 layout(binding = kShadowViewsUnit) uniform samplerBuffer shadow_views;  // ShadowViewRecord
 
 const float kCascadeBlend = 0.1;  // fraction of a cascade over which it blends into the next one

@@ -4,7 +4,7 @@
 
 #include "lib/caustic_tile.glsl"
 
-const float kDiffusePath = 1.2;     // mean path of diffuse light relative to depth
+const float kDiffusePath = 1.2;            // mean path of diffuse light relative to depth
 const float kDiffuseTransmittance = 0.93;  // transmittance of the surface for diffuse light
 
 struct Underwater {

@@ -2,7 +2,7 @@
 
 #include "lib/numbers.glsl"
 
-const float kMaxVelocity = 8.0;   // image sizes
+const float kMaxVelocity = 8.0;          // image sizes
 const float kMinVelocity = 1.0 / 256.0;  // [px]; less is rounding: OpenGL may snap vertices to as much
 
 // `now`: NDC without the jitter. `previous`: clip x, y, w of the point in the previous frame, without the jitter;

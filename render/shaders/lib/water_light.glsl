@@ -1,8 +1,8 @@
 // Light scattered toward the viewer in a body of water. Include after lib/lighting.glsl, lib/optics.glsl and
 // lib/water_surface.glsl.
 
-const float kUpwelling = 0.33;  // upwelling irradiance, per backscatter over absorption (Gordon et al. 1975)
-const float kDownwellingPath = 1.2;     // mean path of downwelling light relative to depth
+const float kUpwelling = 0.33;       // upwelling irradiance, per backscatter over absorption (Gordon et al. 1975)
+const float kDownwellingPath = 1.2;  // mean path of downwelling light relative to depth
 
 vec3 water_extinction(WaterRecord water) {
     return water.absorption.rgb + water.scattering.rgb;

@@ -14,7 +14,7 @@ const float kShift = 0.02;  // fraction of the image, for a horizontal normal
 
 #ifdef FLOOR_MAP
 layout(binding = kFloorMapUnit) uniform sampler2D floor_map;  // repeats
-uniform float floor_tile;                          // side of a copy [m]
+uniform float floor_tile;                                     // side of a copy [m]
 
 // The floor map where a refracted ray hits it, lit by downwelling light.
 RayHit floor_refraction(WaterRecord water, vec3 position, vec3 bent) {
