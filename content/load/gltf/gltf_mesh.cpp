@@ -104,12 +104,19 @@ class MeshBuilder {
         return std::optional<MeshData>();
     }
 
+    template <typename T>
+    static std::vector<T> as_vectors(const std::vector<float>& values) {
+        std::vector<T> all(values.size() / static_cast<std::size_t>(T::length()));
+        if (!all.empty()) {
+            std::memcpy(all.data(), values.data(), values.size() * sizeof(float));
+        }
+        return all;
+    }
+
     Status read_positions() {
         const std::string where = where_ + ".attributes.POSITION";
-        const std::vector<float> values =
-            LIMN_TRY(read_any_floats(document_, find_attribute("POSITION"), 3, where));
-        positions_.resize(values.size() / 3);
-        std::memcpy(positions_.data(), values.data(), values.size() * sizeof(float));
+        positions_ = as_vectors<Vec3>(
+            LIMN_TRY(read_any_floats(document_, find_attribute("POSITION"), 3, where)));
         return Done{};
     }
 
@@ -256,16 +263,13 @@ class MeshBuilder {
 
     template <typename T>
     Result<std::vector<T>> read_all(int accessor, const std::string& where) {
-        const int width = static_cast<int>(T::length());
-        const std::vector<float> values =
-            LIMN_TRY(read_any_floats(document_, accessor, width, where));
-        std::vector<T> all(values.size() / static_cast<std::size_t>(width));
+        std::vector<T> all = as_vectors<T>(
+            LIMN_TRY(read_any_floats(document_, accessor, static_cast<int>(T::length()), where)));
         if (all.size() != positions_.size()) {
             return fail(
                 "{}: found {} elements, expected as many as POSITION has, {}", where, all.size(),
                 positions_.size());
         }
-        std::memcpy(all.data(), values.data(), values.size() * sizeof(float));
         return all;
     }
 
