@@ -308,8 +308,8 @@ void Renderer::update_assets() {
     }
     frame_.assets_identity = assets_;
     frame_.assets_replaced = replaced;
-    meshes_.update(assets.meshes);
     materials_.update(assets, replaced);
+    meshes_.update(assets.meshes, materials_.curves());
 }
 
 /// Effects that some view of this frame may use; creates them when they are first used.

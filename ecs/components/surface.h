@@ -127,6 +127,8 @@ enum class ShadingModel : std::uint8_t {
     Lafortune,   ///< the base color and lobes fitted to a measured BRDF (skin.brdf-lafortune)
     Subsurface,  ///< two GGX lobes over diffuse light that scatters under the surface
     Hair,        ///< strands along v, from roots to tips: reflected, transmitted, scattered light
+    Toon,        ///< diffuse light in the colors of a ramp (tex.toon-ramp)
+    Strand,      ///< threads along the tangent (Banks 1994): satin, grass, brushed metal
 };
 
 /// How the amounts of melanin and blood affect the color of skin.
@@ -153,6 +155,22 @@ LIMN_FIELDS(LafortuneLobe) {
 inline constexpr std::size_t kMaxLafortuneLobes = 4;
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
+
+/// How a surface shows detail that its mesh does not have, from cheap to true (relief.selection).
+/// All but Normal, ObjectNormal and Flat read `relief_texture`.
+enum class SurfaceDetail : std::uint8_t {
+    Normal,        ///< the tangent-space normal map
+    Flat,          ///< none: the normals of the mesh
+    Bump,          ///< normals from the differences of a height map (Blinn 1978)
+    ObjectNormal,  ///< the normal map holds normals in mesh space
+    Parallax,      ///< one lookup shifts the maps (Kaneko 2001)
+    Occlusion,     ///< linear search and one secant step (Tatarchuk 2006)
+    Relief,        ///< linear and binary search (Policarpo and Oliveira 2005)
+    Cone,          ///< relaxed cone stepping (Policarpo and Oliveira 2007)
+    DoubleDepth,   ///< as Relief, between a front and a back surface; empty texels are holes
+    Silhouette,    ///< as Relief on the quadric of the mesh: its outline is that of the relief
+    Displaced,     ///< the mesh is tessellated and displaced
+};
 
 struct Material {
     std::string name = {};
@@ -185,6 +203,24 @@ struct Material {
     float thickness = 0.0f;
     Vec3 attenuation_color = {1, 1, 1};
     float attenuation_distance = 1.0f;
+    float clearcoat = 0.0f;
+    float clearcoat_roughness = 0.0f;
+    Vec3 sheen = {0, 0, 0};
+    float sheen_roughness = 0.0f;
+    float specular_weight = 1.0f;
+    Vec3 specular_tint = {1, 1, 1};
+    float anisotropy = 0.0f;
+    float anisotropy_rotation = 0.0f;
+    float iridescence = 0.0f;
+    float iridescence_index = 1.3f;
+    Vec2 iridescence_thickness = {100, 400};
+    float dispersion = 0.0f;
+    std::vector<Vec3> ramp = {};
+    SurfaceDetail detail = SurfaceDetail::Normal;
+    float relief_depth = 0.05f;
+    std::int32_t relief_steps = 24;
+    std::int32_t relief_refinements = 6;
+    float relief_shadow = 0.0f;
     TextureSlot base_color_texture = {};
     TextureSlot metal_rough_texture = {};
     TextureSlot normal_texture = {};
@@ -193,12 +229,23 @@ struct Material {
     TextureSlot wrinkle_texture = {};
     TextureSlot detail_texture = {};
     TextureSlot thickness_texture = {};
+    TextureSlot relief_texture = {};
+    TextureSlot clearcoat_texture = {};
+    TextureSlot clearcoat_roughness_texture = {};
+    TextureSlot clearcoat_normal_texture = {};
+    TextureSlot sheen_texture = {};
+    TextureSlot sheen_roughness_texture = {};
+    TextureSlot specular_weight_texture = {};
+    TextureSlot specular_tint_texture = {};
+    TextureSlot anisotropy_texture = {};
+    TextureSlot iridescence_texture = {};
+    TextureSlot iridescence_thickness_texture = {};
 };
 
 LIMN_FIELDS(Material) {
     LIMN_FIELD(
         shading, .doc = "shading model",
-        .values = "pbr blinn phong unlit skin lafortune subsurface hair");
+        .values = "pbr blinn phong unlit skin lafortune subsurface hair toon strand");
     LIMN_FIELD(alpha_mode, .doc = "how alpha is used", .values = "opaque mask blend");
     LIMN_FIELD(double_sided, "back faces are drawn too");
     LIMN_FIELD(alpha_cutoff, "with mask: lower alpha is discarded", "", 0, 1);
@@ -262,6 +309,47 @@ LIMN_FIELDS(Material) {
         attenuation_color, .doc = "color of white light after attenuation_distance in the medium",
         .min = 0, .max = 1, .color = true);
     LIMN_FIELD(attenuation_distance, "see attenuation_color", "m", 1e-6, 1e6);
+    LIMN_FIELD(
+        clearcoat, "fraction of the surface under a clear coat of refractive index 1.5", "", 0, 1);
+    LIMN_FIELD(clearcoat_roughness, "perceptual roughness of the clear coat", "", 0, 1);
+    LIMN_FIELD(
+        sheen, .doc = "color of light that fibers scatter at grazing angles, as of velvet",
+        .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(sheen_roughness, "perceptual roughness of the sheen", "", 0, 1);
+    LIMN_FIELD(specular_weight, "factor of the reflection of a dielectric", "", 0, 1);
+    LIMN_FIELD(
+        specular_tint, .doc = "factor of the reflection of a dielectric head on", .min = 0,
+        .max = 100, .color = true);
+    LIMN_FIELD(
+        anisotropy, "how far highlights stretch along the tangent, as on brushed metal", "", 0, 1);
+    LIMN_FIELD(
+        anisotropy_rotation, "of that direction from the tangent, counter-clockwise", "rad", -100,
+        100);
+    LIMN_FIELD(iridescence, "fraction of the surface under a thin film", "", 0, 1);
+    LIMN_FIELD(iridescence_index, "refractive index of the thin film", "", 1, 5);
+    LIMN_FIELD(
+        iridescence_thickness,
+        "thickness of the thin film at values 0 and 1 of its texture; without one it is the second",
+        "nm", 0, 10000);
+    LIMN_FIELD(
+        dispersion,
+        "with transmission and thickness: 20 / Abbe number, the spread of colors in the medium", "",
+        0, 20);
+    LIMN_FIELD(
+        ramp, "toon: colors of the diffuse light from dark to lit, at equal distances, at most 16");
+    LIMN_FIELD(
+        detail, .doc = "how the surface shows detail that its mesh does not have",
+        .values =
+            "normal flat bump object_normal parallax occlusion relief cone double_depth silhouette "
+            "displaced");
+    LIMN_FIELD(relief_depth, "depth of the relief below the mesh where its map is 1", "m", 0, 1000);
+    LIMN_FIELD(relief_steps, "steps of the linear search along the view ray", "", 4, 256);
+    LIMN_FIELD(relief_refinements, "steps of the binary search after it", "", 0, 12);
+    LIMN_FIELD(
+        relief_shadow,
+        "how dark the relief shades itself from the first directional light; shadow maps do so, "
+        "too, but coarsely",
+        "", 0, 1);
     LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
     LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");
@@ -275,7 +363,25 @@ LIMN_FIELDS(Material) {
         detail_texture,
         "tangent-space normals, green up, of finer relief, added to normal_texture: give it a "
         "scale to tile it");
-    LIMN_FIELD(thickness_texture, "green = share of the thickness");
+    LIMN_FIELD(thickness_texture, "green = fraction of the thickness");
+    LIMN_FIELD(
+        relief_texture,
+        "replaces normal_texture where `detail` needs it: red, green = tangent-space normal, alpha "
+        "= depth, 0 on the mesh and 1 deepest; blue = depth of the back surface (double_depth) or "
+        "ratio of the widest empty cone (cone)");
+    LIMN_FIELD(clearcoat_texture, "red = factor of clearcoat");
+    LIMN_FIELD(clearcoat_roughness_texture, "green = factor of clearcoat_roughness");
+    LIMN_FIELD(clearcoat_normal_texture, "tangent-space normals of the clear coat, green up");
+    LIMN_FIELD(sheen_texture, "sRGB factor of sheen");
+    LIMN_FIELD(sheen_roughness_texture, "alpha = factor of sheen_roughness");
+    LIMN_FIELD(specular_weight_texture, "alpha = factor of specular_weight");
+    LIMN_FIELD(specular_tint_texture, "sRGB factor of specular_tint");
+    LIMN_FIELD(
+        anisotropy_texture,
+        "red, green = direction of the stretch in tangent space, blue = factor of anisotropy");
+    LIMN_FIELD(iridescence_texture, "red = factor of iridescence");
+    LIMN_FIELD(
+        iridescence_thickness_texture, "green = thickness between those of iridescence_thickness");
 }
 
 /// Whether what is behind the surface is visible through it.

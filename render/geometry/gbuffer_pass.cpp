@@ -64,9 +64,14 @@ Result<GbufferEffect> GbufferEffect::create(gpu::Device& device, const RenderSet
 
 bool GbufferEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& list = view.data.publish<InstanceList>();
+    const auto& method = view.data.get<LightingMethod>();
     collector.collect(
-        *frame.items, view.camera, view.velocity, *frame.ring, list,
-        view.data.get<LightingMethod>().is_forward());
+        *frame.items, view.camera, view.velocity, *frame.ring, list, method.is_forward());
+    if (method.shading != ShadingRate::Pixel || method.compared) {
+        for (DrawRun& run : list.opaque) {  // programs that light vertices draw the mesh alone
+            remove_off_mesh_hooks(run.features);
+        }
+    }
     for (const std::uint32_t mesh : list.without_tangents) {
         if (reported_meshes.insert(mesh).second) {
             log_warn(

@@ -370,8 +370,9 @@ void InstanceCollector::add_command(
     run.features = batch.features;
     run.features.bits |= (mesh.colored ? kVertexColor : 0u) | (state.inflated ? kInflate : 0u)
                          | (state.deformed ? kDeformed : 0u);
-    if (run.features.maps.has(layout::kNormalSlot) && !mesh.tangents) {
-        run.features.maps.remove(layout::kNormalSlot);
+    constexpr std::uint32_t kTangentSpace = 1u << layout::kNormalSlot | 1u << layout::kReliefSlot;
+    if (run.features.maps.has_any(kTangentSpace) && !mesh.tangents) {
+        run.features.maps.remove_all(kTangentSpace);
         list.without_tangents.push_back(mesh_index(items, state));
     }
     add_hooks(run.features, state.deformed ? items.shapes()[state.index].hooks : HookBits{});

@@ -1,6 +1,7 @@
 #include "render/geometry/mesh_pool.h"
 
 #include "ecs/base/log.h"
+#include "render/geometry/mesh_curvature.h"
 #include "render/gpu/grown_buffer.h"
 
 #include <glm/gtc/packing.hpp>
@@ -58,6 +59,13 @@ void write_stream(
     streams.write(stream, first, std::span<const decltype(pack(mesh, 0))>(values));
 }
 
+void write_curvatures(VertexStreams& streams, const MeshData& mesh, const MeshRange& range) {
+    const std::vector<Vec2> values = fit_curvatures(mesh);
+    streams.write(
+        VertexStream::Curvature, static_cast<std::uint32_t>(range.base_vertex),
+        std::span<const Vec2>(values));
+}
+
 bool is_drawable(const MeshData& mesh) {
     const auto past = [&](std::uint32_t index) { return index >= mesh.positions.size(); };
     if (mesh.positions.empty() || mesh.indices.size() < 3) {
@@ -82,7 +90,7 @@ MeshPool::MeshPool() : streams_("meshes") {
     streams_.vertices().set_indices(indices_);
 }
 
-void MeshPool::update(std::span<const MeshData> meshes) {
+void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
     std::vector<char> drawable(meshes.size());
@@ -104,6 +112,14 @@ void MeshPool::update(std::span<const MeshData> meshes) {
                 upload(meshes[i], coarse[i], meshes_[i]);
             }
             ++revision_;
+        }
+    }
+    if (curved && !streams_.has(VertexStream::Curvature)) {
+        streams_.require(VertexStream::Curvature);
+        for (std::size_t i = 0; i < meshes.size(); ++i) {
+            if (meshes_[i].index_count > 0) {
+                write_curvatures(streams_, meshes[i], meshes_[i]);
+            }
         }
     }
 }
@@ -155,6 +171,9 @@ void MeshPool::upload(
     }
     if (streams_.has(VertexStream::Color)) {
         write_stream(streams_, VertexStream::Color, first, mesh, pack_color);
+    }
+    if (streams_.has(VertexStream::Curvature)) {
+        write_curvatures(streams_, mesh, range);
     }
     indices_.write(std::size_t{4} * range.first_index, std::span<const std::uint32_t>(indices));
 }

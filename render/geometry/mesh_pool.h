@@ -41,8 +41,9 @@ class MeshPool {
     MeshPool();
 
     /// Uploads new meshes, and those whose version has changed. A mesh with an out-of-range index
-    /// or without triangles is logged and draws nothing.
-    void update(std::span<const MeshData> meshes);
+    /// or without triangles is logged and draws nothing. `curved`: some material needs the
+    /// curvatures of meshes.
+    void update(std::span<const MeshData> meshes, bool curved = false);
     /// Removes all meshes; the buffers stay allocated.
     void clear();
 

@@ -210,7 +210,11 @@ void RenderItems::hash_block(RenderItemBlock& block) const {
         const std::uint64_t shape = state.deformed         ? (*shapes_)[state.index].shape
                                     : block.is_drawable(i) ? meshes[state.index].version
                                                            : 0;
-        const std::uint64_t what = hash_combine(drawn, shape);
+        // Which fragments of such surfaces are drawn, and where, depends on the material itself.
+        const SurfaceFeatures& features = materials_->batch(state.batch).features;
+        const bool cut = features.has(kAlphaMask) || is_off_mesh(features);
+        const std::uint64_t what =
+            hash_combine(hash_combine(drawn, shape), cut ? materials_->revision() : 0);
         const Affine a = block.world_at(i, time());
         const float inflation = block.inflation(i);
         block.caster_hashes[i] =

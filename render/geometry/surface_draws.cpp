@@ -6,6 +6,7 @@
 #include "render/material/material_pool.h"
 #include "render/shaders/instance_gpu.h"
 #include "render/shaders/material_gpu.h"
+#include "render/shaders/relief_gpu.h"
 #include "render/skinning/deformed_list.h"
 #include "render/view_block.h"
 
@@ -33,15 +34,19 @@ void draw_commands(
     gpu::Device& device, const FrameData& frame, const DrawRun& run, const gpu::RingSlice& commands,
     std::uint32_t first, std::uint32_t count) {
     const bool deformed = run.features.has(kDeformed);
-    device.bind_vertex_array(
-        deformed ? frame.shapes->vertices().streams().vertices()
-                 : frame.meshes->streams().vertices());
+    VertexStreams& streams =
+        deformed ? frame.shapes->vertices().streams() : frame.meshes->streams();
+    device.bind_vertex_array(streams.vertices());
+    if (streams.has(VertexStream::Curvature)) {
+        streams.curvatures().bind(device, layout::kCurvaturesUnit);
+    }
     device.draw_indexed_indirect(
         GL_TRIANGLES, GL_UNSIGNED_INT, commands.offset + first * sizeof(DrawCommand),
         static_cast<int>(count));
 }
 
-/// Draws a run for its depth: `programs` get only the features that move vertices or make holes.
+/// Draws a run for its depth: `programs` get only the features that move vertices or fragments, or
+/// make holes.
 void draw_depth(
     PassContext& context, const ViewData& view, const InstanceList& list, const DrawRun& run,
     ProgramVariants& programs, const gpu::PipelineState& state) {
@@ -50,7 +55,12 @@ void draw_depth(
     SurfaceFeatures features = moving_features(run.features);
     if (holes) {
         features.bits |= run.features.bits & kHoles;
-        features.maps = run.features.maps.only(layout::kBaseColorSlot);
+        features.maps.add(run.features.maps, 1u << layout::kBaseColorSlot);
+    }
+    const bool off_mesh = is_off_mesh(run.features);
+    if (off_mesh) {
+        add_off_mesh_hooks(features, run.features);
+        features.bits |= run.features.bits & (kUvMap | kUvMaps);
     }
     Variant variant;
     variant.add_if(state.clip, "CLIPPED");
@@ -59,7 +69,7 @@ void draw_depth(
         return;
     }
     context.device().use(gpu::Pipeline{program, state});
-    if (holes) {
+    if (holes || off_mesh) {
         view.frame->materials->bind_textures(run.textures);
     }
     draw_run(context.device(), *view.frame, list, run);

@@ -32,6 +32,7 @@ constexpr StreamInfo kStreams[kVertexStreams] = {
     {"previous positions", sizeof(Vec3), false, VertexStream::Position},
     {"wrinkles", 8, false, VertexStream::Wrinkle},
     {"fold heights", sizeof(float), false, VertexStream::FoldHeight},
+    {"curvatures", sizeof(Vec2), false, VertexStream::Curvature},
 };
 
 constexpr std::uint32_t kWhitePair = 0x3c003c00;  // two half floats, 1 each
@@ -95,7 +96,8 @@ std::span<const gpu::VertexAttribute> mesh_attributes() {
 }
 
 VertexStreams::VertexStreams(std::string name)
-    : name_(std::move(name)), vertices_(name_, kMeshAttributes) {
+    : name_(std::move(name)), vertices_(name_, kMeshAttributes),
+      curvatures_("curvatures", GL_RG32F) {
     white_ = gpu::Buffer::of("white", std::span<const std::uint32_t>(kWhite));
 }
 
@@ -127,7 +129,8 @@ void VertexStreams::require(VertexStream stream) {
     gpu::Buffer made = gpu::grown_buffer(
         name_ + ", " + info.name, buffer(info.stand_in), constant ? 0 : bytes, bytes);
     if (constant) {
-        made.clear(stream == VertexStream::FoldHeight ? 0 : kWhitePair);
+        const bool zero = stream == VertexStream::FoldHeight || stream == VertexStream::Curvature;
+        made.clear(zero ? 0 : kWhitePair);
     }
     buffers_[index_of(stream)] = std::move(made);
     bind(stream);
@@ -136,7 +139,9 @@ void VertexStreams::require(VertexStream stream) {
 void VertexStreams::bind(VertexStream stream) {
     const auto binding = static_cast<GLuint>(stream);
     const StreamInfo& info = kStreams[binding];
-    if (has(stream)) {
+    if (stream == VertexStream::Curvature) {
+        curvatures_.set(buffer(stream));
+    } else if (has(stream)) {
         vertices_.set_vertices(binding, buffer(stream), 0, static_cast<int>(info.stride));
     } else if (info.stand_in != stream) {
         vertices_.set_vertices(binding, buffer(info.stand_in), 0, static_cast<int>(info.stride));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/gpu/buffer.h"
+#include "render/gpu/buffer_texture.h"
 #include "render/gpu/vertex_array.h"
 
 #include <array>
@@ -24,8 +25,9 @@ enum class VertexStream : std::uint8_t {
     PreviousPosition,  ///< Vec3, of deformed meshes; absent: the current one
     Wrinkle,     ///< four half floats, of deformed meshes: strength of wrinkles (wrinkle_pass.h)
     FoldHeight,  ///< float, of deformed meshes: how far folds move them along their normals [m]
+    Curvature,   ///< Vec2 (mesh_curvature.h); not an attribute: curvatures() by gl_VertexID
 };
-inline constexpr int kVertexStreams = 8;
+inline constexpr int kVertexStreams = 9;
 
 /// Normal and tangent as 16-bit snorm, -32767 .. 32767 for -1 .. 1.
 struct PackedFrame {
@@ -70,6 +72,9 @@ class VertexStreams {
         const VertexStreams& from, std::uint32_t from_first, std::uint32_t to_first,
         std::uint32_t count);
 
+    /// VertexStream::Curvature as a texture.
+    [[nodiscard]] const BufferTexture& curvatures() const { return curvatures_; }
+
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
 
@@ -82,6 +87,7 @@ class VertexStreams {
     gpu::Buffer white_;
     std::uint32_t capacity_ = 0;
     gpu::VertexArray vertices_;
+    BufferTexture curvatures_;
 };
 
 }  // namespace limn

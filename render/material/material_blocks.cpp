@@ -11,6 +11,7 @@
 #include "render/shaders/material_lafortune_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
 #include "render/shaders/material_subsurface_gpu.h"
+#include "render/shaders/relief_gpu.h"
 
 #include <algorithm>
 #include <array>
@@ -69,6 +70,12 @@ std::optional<layout::HairBlock> make_block_of_hair(const Material& m) {
     return m.shading == ShadingModel::Hair ? std::optional(make_hair_block(m)) : std::nullopt;
 }
 
+std::optional<layout::ReliefBlock> make_relief_block(const Material& m) {
+    const Vec4 search = {m.relief_depth, m.relief_steps, m.relief_refinements, m.relief_shadow};
+    return is_used(m.relief_texture) ? std::optional(layout::ReliefBlock{.search = search})
+                                     : std::nullopt;
+}
+
 std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
     if (m.shading != ShadingModel::Subsurface) {
         return std::nullopt;
@@ -117,6 +124,7 @@ constexpr BlockKind kKinds[] = {
     block_kind<make_lafortune_block>(layout::kLafortuneBlock),
     block_kind<make_clear_block>(layout::kClearBlock),
     block_kind<make_block_of_hair>(layout::kHairBlock),
+    block_kind<make_relief_block>(layout::kReliefBlock),
     block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
 };
 

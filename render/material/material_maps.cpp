@@ -20,6 +20,7 @@ constexpr MapSlot kSlots[] = {
     {layout::kWrinkleSlot, "WRINKLE_MAP", &Material::wrinkle_texture, false},
     {layout::kDetailSlot, "DETAIL_MAP", &Material::detail_texture, false},
     {layout::kThicknessSlot, "THICKNESS_MAP", &Material::thickness_texture, false},
+    {layout::kReliefSlot, "RELIEF_MAP", &Material::relief_texture, true},
 };
 
 constexpr bool numbers_fit() {

@@ -37,15 +37,30 @@ class MapUnits {
     }
     void remove(std::uint32_t slot) { bits_ &= ~(std::uint64_t{15} << 4 * slot); }
     [[nodiscard]] bool has(std::uint32_t slot) const { return (bits_ >> 4 * slot & 15) != 0; }
+    /// Whether any of `slots`, a set of bits, exists.
+    [[nodiscard]] bool has_any(std::uint32_t slots) const {
+        MapUnits some;
+        some.add(*this, slots);
+        return some.bits_ != 0;
+    }
     /// The map must exist.
     [[nodiscard]] std::uint32_t unit(std::uint32_t slot) const {
         return static_cast<std::uint32_t>(bits_ >> 4 * slot & 15) - 1;
     }
-    /// Only this slot.
-    [[nodiscard]] MapUnits only(std::uint32_t slot) const {
-        MapUnits one;
-        one.bits_ = bits_ & std::uint64_t{15} << 4 * slot;
-        return one;
+    /// Adds those of `other` that are in `slots`, a set of bits.
+    void add(const MapUnits& other, std::uint32_t slots) {
+        for (std::uint32_t slot = 0; slot < layout::kMaxMapSlots; ++slot) {
+            if ((slots >> slot & 1) != 0 && other.has(slot)) {
+                set(slot, other.unit(slot));
+            }
+        }
+    }
+    void remove_all(std::uint32_t slots) {
+        for (std::uint32_t slot = 0; slot < layout::kMaxMapSlots; ++slot) {
+            if ((slots >> slot & 1) != 0) {
+                remove(slot);
+            }
+        }
     }
     [[nodiscard]] std::uint64_t bits() const { return bits_; }
     bool operator==(const MapUnits&) const = default;

@@ -68,6 +68,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     textures_.clear();
     shading_models_ = 0;
     diffuses_ = false;
+    curves_ = false;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
@@ -139,6 +140,7 @@ void MaterialPool::add_material(const Material& material) {
     if (material.transmission > 0) {
         batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
     }
+    batch.features.hooks = material_hooks(material);
     add_maps(material, batch, record);
 
     const auto same = [&](const SurfaceBatch& b) {
@@ -153,6 +155,7 @@ void MaterialPool::add_material(const Material& material) {
     records_.push_back(record);
     models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
     shading_models_ |= 1u << stored_number(material.shading);
+    curves_ = curves_ || material.detail == SurfaceDetail::Silhouette;
     diffuses_ =
         diffuses_ || (material.shading == ShadingModel::Subsurface && material.scatter != Vec3(0));
 }

@@ -60,6 +60,9 @@ class MaterialPool {
     /// Whether some material has subsurface scattering (subsurface_pass.h).
     [[nodiscard]] bool diffuses() const { return diffuses_; }
 
+    /// Whether some material needs the curvatures of meshes (SurfaceDetail::Silhouette).
+    [[nodiscard]] bool curves() const { return curves_; }
+
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
     [[nodiscard]] const ImagePool& images() const { return images_; }
@@ -91,6 +94,7 @@ class MaterialPool {
     std::uint64_t revision_ = 0;
     ShadingModelSet shading_models_ = 0;
     bool diffuses_ = false;
+    bool curves_ = false;
 };
 
 }  // namespace limn

@@ -1,6 +1,8 @@
 #include "render/material/surface_hooks.h"
 
 #include "ecs/base/check.h"
+#include "ecs/components/surface.h"
+#include "render/material/relief_hook.h"
 #include "render/material/surface_features.h"
 #include "render/material/wrinkle_hook.h"
 #include "render/variant.h"
@@ -15,6 +17,7 @@ namespace limn {
 namespace {
 
 constexpr const SurfaceHook* kSurfaceHooks[] = {
+    &kReliefHook,
     &kWrinkleHook,
 };
 static_assert(std::size(kSurfaceHooks) <= kMaxSurfaceHooks);
@@ -59,6 +62,16 @@ std::span<const SurfaceHook* const> surface_hooks() {
     return kSurfaceHooks;
 }
 
+HookBits material_hooks(const Material& material) {
+    HookBits bits;
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        if (hook->of_material != nullptr) {
+            bits.set(*hook, hook->of_material(material));
+        }
+    }
+    return bits;
+}
+
 void add_hooks(SurfaceFeatures& features, const HookBits& instance) {
     for (const SurfaceHook* hook : kSurfaceHooks) {
         hook->add(features, instance.of(*hook));
@@ -71,6 +84,32 @@ HookBits moving_hooks(const HookBits& hooks) {
         moving.set(*hook, static_cast<std::uint16_t>(hooks.of(*hook) & hook->moving));
     }
     return moving;
+}
+
+bool is_off_mesh(const SurfaceFeatures& features) {
+    return std::ranges::any_of(kSurfaceHooks, [&](const SurfaceHook* hook) {
+        return (features.hooks.of(*hook) & hook->off_mesh) != 0;
+    });
+}
+
+void add_off_mesh_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features) {
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        const std::uint16_t bits = features.hooks.of(*hook);
+        if ((bits & hook->off_mesh) == 0) {
+            continue;
+        }
+        depth_only.hooks.set(*hook, bits);
+        depth_only.maps.add(features.maps, hook->maps);
+    }
+}
+
+void remove_off_mesh_hooks(SurfaceFeatures& features) {
+    for (const SurfaceHook* hook : kSurfaceHooks) {
+        if ((features.hooks.of(*hook) & hook->off_mesh) != 0) {
+            features.hooks.set(*hook, 0);
+            features.maps.remove_all(hook->maps);
+        }
+    }
 }
 
 void add_hook_definitions(Variant& variant, const HookBits& hooks) {

@@ -7,6 +7,7 @@
 namespace limn {
 
 class Variant;
+struct Material;
 struct SurfaceFeatures;
 struct SurfaceHook;
 
@@ -24,6 +25,10 @@ struct SurfaceHook;
 //
 // The file of a hook is part of every such program and has a function for each of its points,
 // which does nothing unless its definitions are set.
+
+// A hook may find the visible point off the mesh, below a fragment. It then has the bit of the
+// definition OFF_MESH and sets, at HookPoint::Uv, surface_depth, surface_offset and surface_hole
+// (lib/material.glsl); passes that draw depth alone call it, too.
 
 /// Where a hook is called: each is a function `<hook>_<point>`.
 enum class HookPoint : std::uint8_t {
@@ -61,9 +66,13 @@ struct SurfaceHook {
     std::span<const HookPoint> points;  ///< where it is called
     std::span<const HookDefinition> definitions;
     std::uint16_t moving = 0;             ///< bits with which it moves vertices
+    std::uint16_t off_mesh = 0;           ///< bits with which fragments lie off the mesh
+    std::uint32_t maps = 0;               ///< with off_mesh: bits of the map slots that it reads
     const char* position_file = nullptr;  ///< with HookPoint::Position
     const char* vertex_file = nullptr;    ///< with HookPoint::Vertex
     const char* surface_file = nullptr;   ///< with any other point
+    /// The bits of a material, of all its instances; null: none.
+    std::uint16_t (*of_material)(const Material& material) = nullptr;
     /// Adds to the features of a material what the hook needs for an instance with these bits; also
     /// called for instances without any.
     void (*add)(SurfaceFeatures& features, std::uint16_t instance);
@@ -72,11 +81,24 @@ struct SurfaceHook {
 /// In the order of their calls.
 [[nodiscard]] std::span<const SurfaceHook* const> surface_hooks();
 
+/// SurfaceHook::of_material of each.
+[[nodiscard]] HookBits material_hooks(const Material& material);
+
 /// Calls SurfaceHook::add of each.
 void add_hooks(SurfaceFeatures& features, const HookBits& instance);
 
 /// The hooks that move vertices, which depth-only passes need, too.
 [[nodiscard]] HookBits moving_hooks(const HookBits& hooks);
+
+/// Whether some hook has fragments lie off the mesh.
+[[nodiscard]] bool is_off_mesh(const SurfaceFeatures& features);
+
+/// Adds the hooks of `features` with which fragments lie off the mesh, and their maps, to those of
+/// a depth-only pass.
+void add_off_mesh_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features);
+
+/// Removes them, for programs that shade vertices.
+void remove_off_mesh_hooks(SurfaceFeatures& features);
 
 /// Adds the definition of each bit.
 void add_hook_definitions(Variant& variant, const HookBits& hooks);

@@ -16,8 +16,8 @@ void main() {
     vec4 color = surface_color();
     float opacity = clamp(color.a, 0.0, 1.0);
     SurfaceSample s = surface_sample(color.rgb);
-    float distance = view_distance(gl_FragCoord.z);
-    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    float distance = view_distance(surface_depth);
+    vec3 position_ws = world_position(gl_FragCoord.xy, surface_depth);
     Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, distance));
 
     // The reflected fraction does not transmit the background.
@@ -38,4 +38,5 @@ void main() {
     vec4 fog = fog_before(position_ws);
     vec3 own = (opacity * (light.diffuse + s.emission) + light.specular) * (1.0 - fog.a);
     radiance = vec4(storable(own + fog.rgb * (coverage - clear_coverage) + through), coverage);
+    cut_surface(color.a);
 }

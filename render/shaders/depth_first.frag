@@ -1,17 +1,18 @@
 // Depth prepass for forward shading. Definitions of lib/material.glsl, and
+//   OFF_MESH    the depth of the visible point
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 // Techniques: engine.depth-first, shade.z-prepass
 #version 450
-#ifdef ALPHA_MASK
+#if defined(ALPHA_MASK) || defined(OFF_MESH)
+#ifndef OFF_MESH
 #define LIT_AT_VERTICES  // colors only
+#endif
 #include "lib/view.glsl"
 #include "lib/material.glsl"
 #endif
 
 void main() {
-#ifdef ALPHA_MASK
-    if (surface_color().a < material_texel(2).w) {
-        discard;
-    }
+#if defined(ALPHA_MASK) || defined(OFF_MESH)
+    cut_surface(surface_color().a);
 #endif
 }

@@ -8,7 +8,7 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     SurfaceSample s = forward_surface();
-    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    vec3 position_ws = world_position(gl_FragCoord.xy, surface_depth);
     Reflected around = reflect_around(s, position_ws);
     radiance = vec4(storable(s.emission + around.diffuse + around.specular), 1.0);
 }

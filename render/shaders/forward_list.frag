@@ -9,7 +9,7 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     SurfaceSample s = forward_surface();
-    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    vec3 position_ws = world_position(gl_FragCoord.xy, surface_depth);
     // Here light_cells holds the lists of objects, not of cells.
     uvec2 list = uvec2(0u);
 #ifdef LOCAL_LIGHTS

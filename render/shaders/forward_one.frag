@@ -8,6 +8,7 @@
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
-    radiance = vec4(storable(reflect_one(forward_surface(), position_ws, gl_FragCoord.xy)), 0.0);
+    SurfaceSample s = forward_surface();
+    vec3 position_ws = world_position(gl_FragCoord.xy, surface_depth);
+    radiance = vec4(storable(reflect_one(s, position_ws, gl_FragCoord.xy)), 0.0);
 }

@@ -29,12 +29,11 @@ void main() {
 #endif
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now_ndc, previous_clip, view.size.xy);
+    vec3 previous = previous_clip;
+#ifdef OFF_MESH
+    previous += (view.previous_clip_from_world * vec4(surface_offset, 0.0)).xyw;
 #endif
-#ifdef ALPHA_MASK
-    // Last: a discard leaves the derivatives of the quad undefined, and the texture lookups above need them.
-    if (color.a < material_texel(2).w) {
-        discard;
-    }
+    velocity = velocity_from(now_ndc, previous, view.size.xy);
 #endif
+    cut_surface(color.a);
 }

@@ -16,6 +16,7 @@ const uint kEmissionSlot = 4u;
 const uint kWrinkleSlot = 5u;  // like normals; 128 of 255 is flat
 const uint kDetailSlot = 6u;   // like normals
 const uint kThicknessSlot = 7u;  // g
+const uint kReliefSlot = 8u;     // relief_gpu.h; r, g: normals
 
 const uint kMaxMapSlots = 12u;
 

@@ -44,8 +44,14 @@ TEST_CASE("material maps: twelve maps in three arrays need three texture units")
         CHECK(units.has(slot));
         CHECK(bindings.used()[units.unit(slot)].array == 1 + slot % 3);
         CHECK(layer_of(layers, slot) == 255 - 20 * slot);
-        CHECK(units.only(slot).unit(slot) == units.unit(slot));
-        CHECK(!units.only(slot).has((slot + 1) % layout::kMaxMapSlots));
+        MapUnits only;
+        only.add(units, 1u << slot);
+        CHECK(only.unit(slot) == units.unit(slot));
+        CHECK_FALSE(only.has_any(~(1u << slot)));
+        only.remove_all(~(1u << slot));
+        CHECK(only.has(slot));
+        only.remove_all(1u << slot);
+        CHECK(only == MapUnits{});
     }
     units.remove(4);
     CHECK(!units.has(4));

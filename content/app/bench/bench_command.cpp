@@ -4,6 +4,7 @@
 #include "content/app/bench/bench_lens.h"
 #include "content/app/bench/bench_lights.h"
 #include "content/app/bench/bench_report.h"
+#include "content/app/bench/bench_surfaces.h"
 #include "content/app/commands/headless.h"
 #include "content/app/commands/progress.h"
 #include "content/app/commands/sibling_program.h"
@@ -36,6 +37,7 @@ constexpr int kHeapInterval = 60;  ///< frames between heap measurements
 constexpr const char* kParticlesName = "particles";  ///< likewise: particle pools, without a scene
 constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
+constexpr const char* kSurfacesName = "surfaces";    ///< not a scene: kinds of surface detail
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
 /// Whether another program runs this benchmark.
@@ -98,6 +100,13 @@ Status run_lens_bench(const BenchOptions& options) {
     }
     return write_results(
         options, lens_bench_table(*bench), lens_bench_json(*bench), lens_bench_csv(*bench));
+}
+
+Status run_surfaces_bench(const BenchOptions& options) {
+    HeadlessRenderer headless = LIMN_TRY(create_renderer_for(options));
+    const SurfaceBench bench = LIMN_TRY(measure_surfaces(options, headless));
+    return write_results(
+        options, surface_bench_table(bench), surface_bench_json(bench), surface_bench_csv(bench));
 }
 
 Status run_fakephong_bench(const BenchOptions& options) {
@@ -217,6 +226,9 @@ Status run_bench(const BenchOptions& options) {
     }
     if (options.scene == kLensName) {
         return run_lens_bench(options);
+    }
+    if (options.scene == kSurfacesName) {
+        return run_surfaces_bench(options);
     }
     if (options.scene == kFakePhongName) {
         return run_fakephong_bench(options);

@@ -207,6 +207,12 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"effect
 "p95_ms", "added_ms", "passes_ms", "passes"}]}
 CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms
 
+`limn bench surfaces` draws one wall of the level `temple` with each material.detail, from flat to
+silhouette. "ratio" is the frame's CPU time to that of the flat wall.
+JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"detail", "median_ms",
+"gbuffer_ms", "ratio"}]}
+CSV: detail,frames,median_ms,gbuffer_ms,ratio
+
 `limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
 method of rendering.shading, alternating, --frames times each; the best counts. Beside these times
 are the operations that the methods take on a CPU: lighting evaluations per facet, the rest per pixel,
@@ -236,6 +242,7 @@ Examples:
   limn bench lights --size 640x360
   limn bench lens --size 640x360 --frames 100
   limn bench fakephong --size 640x360 --frames 9
+  limn bench surfaces --size 640x360 --frames 40
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg

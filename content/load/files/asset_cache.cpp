@@ -117,8 +117,9 @@ void visit_image(Archive& archive, Image& image) {
 
 template <typename Archive, typename Maps>
 void visit_maps(Archive& archive, Maps& maps) {
-    auto& [base_color, normal, orm, motion, positive_light, negative_light] = maps;
-    for (auto* image : {&base_color, &normal, &orm, &motion, &positive_light, &negative_light}) {
+    auto& [base_color, normal, orm, motion, positive_light, negative_light, relief] = maps;
+    for (auto* image :
+         {&base_color, &normal, &orm, &motion, &positive_light, &negative_light, &relief}) {
         visit_image(archive, *image);
     }
 }

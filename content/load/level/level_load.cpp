@@ -50,6 +50,12 @@ constexpr PatternMap kPatternMaps[] = {
     {".orm", &PatternMaps::orm},
     {".motion", &PatternMaps::motion},
 };
+constexpr PatternMap kReliefMaps[] = {
+    kPatternMaps[0],
+    kPatternMaps[1],
+    kPatternMaps[2],
+    {".relief", &PatternMaps::relief},
+};
 constexpr PatternMap kPuffMaps[] = {
     kPatternMaps[0],
     kPatternMaps[1],
@@ -64,6 +70,8 @@ std::span<const PatternMap> pattern_maps(const PatternKind& kind) {
         return kPatternMaps;
     case PatternKindMaps::Light:
         return kPuffMaps;
+    case PatternKindMaps::Relief:
+        return kReliefMaps;
     case PatternKindMaps::Surface:
         break;
     }
@@ -322,7 +330,7 @@ class LevelParser {
             for (TextureSlot* const slot :
                  {&material.base_color_texture, &material.metal_rough_texture,
                   &material.normal_texture, &material.occlusion_texture, &material.emission_texture,
-                  &material.wrinkle_texture}) {
+                  &material.wrinkle_texture, &material.relief_texture}) {
                 slot->scale = scaled.scale;
             }
         }
@@ -381,6 +389,9 @@ class LevelParser {
         material.normal_texture.image = {first + 1};
         material.metal_rough_texture.image = {first + 2};
         material.occlusion_texture.image = {first + 2};
+        if (images_.contains(json.text + ".relief")) {
+            material.relief_texture.image = {first + 3};
+        }
         return Done{};
     }
 

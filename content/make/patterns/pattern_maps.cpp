@@ -77,11 +77,9 @@ PatternMaps make_surface_maps(int size, const Texels& texel, std::vector<float>&
     return maps;
 }
 
-}  // namespace
-
-PatternMaps make_pattern_maps(int size, const Texels& texel) {
-    std::vector<float> heights;
-    PatternMaps maps = make_surface_maps(size, texel, heights);
+/// `heights`: in pixels, row by row.
+void write_normals(ImageData& normal, const std::vector<float>& heights) {
+    const int size = normal.width;
     for_pixels(size, [&](int x, int y, std::size_t pixel) {
         const auto height = [&](int i, int j) {
             const int column = (i + size) % size;
@@ -94,7 +92,37 @@ PatternMaps make_pattern_maps(int size, const Texels& texel) {
         const float right = 0.5f * (height(x + 1, y) - height(x - 1, y));
         const float down = 0.5f * (height(x, y + 1) - height(x, y - 1));
         const Vec3 n = 0.5f + 0.5f * glm::normalize(Vec3(-right, down, 1.0f));
-        put(maps.normal, pixel, to_byte(n.x), to_byte(n.y), to_byte(n.z));
+        put(normal, pixel, to_byte(n.x), to_byte(n.y), to_byte(n.z));
+    });
+}
+
+}  // namespace
+
+PatternMaps make_pattern_maps(int size, const Texels& texel) {
+    std::vector<float> heights;
+    PatternMaps maps = make_surface_maps(size, texel, heights);
+    write_normals(maps.normal, heights);
+    return maps;
+}
+
+PatternMaps make_relief_maps(int size, float relief, const Texels& texel) {
+    std::vector<float> heights;
+    PatternMaps maps = make_surface_maps(
+        size,
+        [&](const Vec2& uv) {
+            PatternTexel t = texel(uv);
+            t.height = relief * std::clamp(t.height, 0.0f, 1.0f);
+            return t;
+        },
+        heights);
+    write_normals(maps.normal, heights);
+    maps.relief = maps.normal;
+    const float range = relief * static_cast<float>(size);
+    for_pixels(size, [&](int, int, std::size_t pixel) {
+        std::uint8_t* const at = &maps.relief.pixels[4 * pixel];
+        const bool solid = maps.base_color.pixels[4 * pixel + 3] >= 128;
+        at[2] = solid ? 255 : 0;
+        at[3] = solid ? to_byte(1.0f - heights[pixel] / range) : 255;
     });
     return maps;
 }

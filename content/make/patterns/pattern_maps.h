@@ -27,12 +27,21 @@ struct PatternMaps {
     /// For flipbooks of volumes, else empty: the light that they scatter from the right, above
     /// and behind, with their opacity; see ParticleLook::negative_light.
     ImageData positive_light, negative_light;
+    /// For stone with relief, else empty: normals, and depth in alpha, of the heights between 0 and
+    /// 1 (Material::relief_texture). Blue is the back: the bottom, or in front of the surface where
+    /// the opacity is 0.
+    ImageData relief;
 };
 
 /// Calls texel(uv) once for the center of every pixel, on several threads; `size` >= 1 pixels.
 /// Differences of height wrap around at the edges of the image.
 [[nodiscard]] PatternMaps
 make_pattern_maps(int size, const std::function<PatternTexel(const Vec2& uv)>& texel);
+
+/// Likewise, with a relief map whose depth of 1 is `relief` image widths; the heights of texels are
+/// 0 .. 1 of that.
+[[nodiscard]] PatternMaps
+make_relief_maps(int size, float relief, const std::function<PatternTexel(const Vec2& uv)>& texel);
 
 /// Likewise, with normals for skin that folds (write_wrinkle_map).
 [[nodiscard]] PatternMaps

@@ -14,6 +14,7 @@
 #include "content/make/patterns/noise.h"
 #include "content/make/patterns/pattern_tools.h"
 #include "content/make/patterns/puff_pattern.h"
+#include "content/make/patterns/relief_patterns.h"
 #include "content/make/patterns/sprite_patterns.h"
 #include "content/make/patterns/studio_pattern.h"
 
@@ -382,6 +383,9 @@ std::span<const PatternKind> pattern_kinds() {
     static const std::vector<PatternKind> kinds = {
         pattern_kind<AshlarPattern, make_ashlar>("ashlar", "blocks of dressed stone in courses"),
         pattern_kind<AsphaltPattern, make_asphalt>("asphalt", "a road after rain"),
+        pattern_kind<BlocksPattern, make_blocks>(
+            "blocks", "blocks of stone with deep joints, with a relief map",
+            PatternKindMaps::Relief),
         pattern_kind<BricksPattern, make_bricks>("bricks", "a wall of rough bricks"),
         pattern_kind<BrushedMetalPattern, make_brushed_metal>(
             "brushed_metal", "metal with fine streaks along u"),
@@ -422,6 +426,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
             "rose_window", "a round window of stained glass; black outside the glass"),
+        pattern_kind<RosettesPattern, make_rosettes>(
+            "rosettes", "carved flowers in frames, with a relief map", PatternKindMaps::Relief),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
         pattern_kind<ShardPattern, make_shard>("shard", "a flipbook of different splinters"),
         pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),

@@ -18,6 +18,7 @@ enum class PatternKindMaps {
     Surface,  ///< nothing else
     Motion,   ///< the motion map of a flipbook
     Light,    ///< both light maps of a flipbook of volumes
+    Relief,   ///< the relief map
 };
 
 struct PatternKind {

@@ -6,6 +6,9 @@
 // holes need no test: the depth prepass has left them out.
 SurfaceSample forward_surface() {
     SurfaceSample s = unpack_surface(pack_surface(surface_sample(surface_color().rgb)));
+#ifdef OFF_MESH
+    gl_FragDepth = surface_depth;
+#endif
     s.material = material_and_flags.x;
     return s;
 }

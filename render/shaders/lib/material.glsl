@@ -1,6 +1,6 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP  each is the texture unit of the map
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP RELIEF_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
@@ -8,6 +8,8 @@
 //   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
+//   SHIFTED_UV     hooks shift the texture coordinates, whose derivatives are then those from before
+//   OFF_MESH       hooks find the visible point off the mesh, or a hole
 //   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
 //   STRANDS        of hair, which lies along v
 //   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
@@ -36,23 +38,50 @@ vec4 material_texel(int i) {
 }
 
 vec4 map_uv = uv;  // texture coordinates of maps: hooks may shift them
+// The visible point of the surface: hooks may find one off the mesh.
+float surface_depth = gl_FragCoord.z;
+vec3 surface_offset = vec3(0.0);  // from the fragment, world space
+bool surface_hole = false;
+#ifdef OFF_MESH
+layout(depth_less) out float gl_FragDepth;  // depth is reversed: never nearer than the mesh
+#endif
 
 #ifdef MAP_LAYERS
-// Texture coordinates and layer of a map.
-vec3 map_texcoord(uint slot) {
-    float layer = map_layer(map_layers, slot);
+// Maps the texture coordinates `sets`, with offset 0 a difference of them, to those of a map.
+vec2 map_coordinates(uint slot, vec4 sets, float offset_factor) {
 #if defined(UV_MAPS) || defined(UV_MAP)
 #ifdef UV_MAP
     slot = 0u;  // all are the same
 #endif
     vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot));
     vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot) + 1);
-    vec2 set = offset.z > 0.5 ? map_uv.zw : map_uv.xy;
-    return vec3(vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy, layer);
+    vec2 set = offset.z > 0.5 ? sets.zw : sets.xy;
+    return vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset_factor * offset.xy;
 #else
-    return vec3(map_uv.xy, layer);
+    return sets.xy;
 #endif
 }
+
+vec2 map_coordinates(uint slot, vec4 sets) {
+    return map_coordinates(slot, sets, 1.0);
+}
+
+vec2 map_gradient(uint slot, vec4 difference) {
+    return map_coordinates(slot, difference, 0.0);
+}
+
+// Texture coordinates and layer of a map.
+vec3 map_texcoord(uint slot) {
+    return vec3(map_coordinates(slot, map_uv), map_layer(map_layers, slot));
+}
+
+#ifdef SHIFTED_UV
+vec4 map_uv_dx = dFdx(uv);
+vec4 map_uv_dy = dFdy(uv);
+#define MAP_TEXEL(unit, slot) textureGrad(material_maps[unit], map_texcoord(slot), map_gradient(slot, map_uv_dx), map_gradient(slot, map_uv_dy))
+#else
+#define MAP_TEXEL(unit, slot) texture(material_maps[unit], map_texcoord(slot))
+#endif
 #endif
 
 // sRGB to linear, to within 0.002, without pow().
@@ -64,7 +93,7 @@ vec3 srgb_decode(vec3 c) {
 vec4 base_color_texel() {
     vec4 texel = vec4(1.0);
 #ifdef BASE_COLOR_MAP
-    texel = texture(material_maps[BASE_COLOR_MAP], map_texcoord(kBaseColorSlot));
+    texel = MAP_TEXEL(BASE_COLOR_MAP, kBaseColorSlot);
 #ifdef SRGB_BASE_COLOR
     texel.rgb = srgb_decode(texel.rgb);
 #endif
@@ -91,7 +120,7 @@ vec4 surface_color() {
 vec3 surface_emission() {
     vec3 emission = material_texel(1).rgb;
 #ifdef EMISSION_MAP
-    emission *= texture(material_maps[EMISSION_MAP], map_texcoord(kEmissionSlot)).rgb;
+    emission *= MAP_TEXEL(EMISSION_MAP, kEmissionSlot).rgb;
 #endif
     return emission;
 }
@@ -105,11 +134,11 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
-    n_ts = texture(material_maps[NORMAL_MAP], map_texcoord(kNormalSlot)).xyz * 2.0 - 1.0;
+    n_ts = MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz * 2.0 - 1.0;
     n_ts.xy *= strength;
 #endif
 #ifdef DETAIL_MAP
-    vec3 detail = texture(material_maps[DETAIL_MAP], map_texcoord(kDetailSlot)).xyz * 2.0 - 1.0;
+    vec3 detail = MAP_TEXEL(DETAIL_MAP, kDetailSlot).xyz * 2.0 - 1.0;
     n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
 #endif
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
@@ -165,7 +194,7 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.material = material_and_flags.x;
     s.model = material_and_flags.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    vec3 texel = texture(material_maps[METAL_ROUGH_MAP], map_texcoord(kMetalRoughSlot)).rgb;
+    vec3 texel = MAP_TEXEL(METAL_ROUGH_MAP, kMetalRoughSlot).rgb;
     s.roughness *= texel.g;
     s.metalness *= texel.b;
 #ifdef OCCLUSION_SHARED
@@ -173,7 +202,7 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
 #endif
 #ifdef OCCLUSION_MAP
-    s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_texcoord(kOcclusionSlot)).r - 1.0);
+    s.occlusion = 1.0 + factors.z * (MAP_TEXEL(OCCLUSION_MAP, kOcclusionSlot).r - 1.0);
 #endif
     // Highlights of strands follow their direction, not the normal.
     s.roughness = s.model == kModelHair ? s.roughness : widen_roughness(s.roughness, s.normal_ws);
@@ -186,3 +215,19 @@ SurfaceSample surface_sample(vec3 albedo) {
     return s;
 }
 #endif
+
+// Writes the depth of the visible point and discards what is not there. Last: a discard leaves the derivatives of the
+// quad undefined, and texture lookups need them.
+void cut_surface(float opacity) {
+#ifdef OFF_MESH
+    gl_FragDepth = surface_depth;
+    if (surface_hole) {
+        discard;
+    }
+#endif
+#ifdef ALPHA_MASK
+    if (opacity < material_texel(2).w) {
+        discard;
+    }
+#endif
+}

@@ -37,6 +37,6 @@ float map_layer(vec4 layers, uint slot) {
 }
 
 // All stages of a program must declare the same varyings.
-#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP)
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP) || defined(RELIEF_MAP)
 #define MAP_LAYERS
 #endif

@@ -1,0 +1,71 @@
+#include "render/material/relief_hook.h"
+
+#include "ecs/components/surface.h"
+#include "render/material/material_maps.h"
+#include "render/material/surface_features.h"
+
+// Techniques: relief.permutations, relief.selection
+
+namespace limn {
+namespace {
+
+constexpr HookPoint kReliefPoints[] = {HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal};
+
+constexpr HookDefinition kReliefDefinitions[] = {
+    {kReliefBump, "RELIEF_BUMP"},     {kReliefParallax, "RELIEF_PARALLAX"},
+    {kReliefLinear, "RELIEF_LINEAR"}, {kReliefCones, "RELIEF_CONES"},
+    {kReliefClosed, "RELIEF_CLOSED"}, {kReliefCurved, "RELIEF_CURVED"},
+    {kReliefShifted, "SHIFTED_UV"},   {kReliefOffMesh, "OFF_MESH"},
+};
+
+/// In the order of SurfaceDetail. Displaced is drawn as Relief where nothing tessellates.
+constexpr std::uint16_t kBelow = kReliefShifted | kReliefOffMesh;
+constexpr std::uint16_t kReliefOfDetail[] = {
+    0,
+    kReliefFlat,
+    kReliefBump,
+    0,
+    kReliefParallax | kReliefShifted,
+    kReliefLinear | kBelow,
+    kBelow,
+    kReliefCones | kBelow,
+    kReliefClosed | kBelow,
+    kReliefCurved | kBelow,
+    kBelow,
+};
+
+std::uint16_t relief_of_material(const Material& material) {
+    return kReliefOfDetail[static_cast<std::size_t>(material.detail)];
+}
+
+/// Leaves out the maps that the surface does not need, and what needs a map that it does not have.
+void add_relief(SurfaceFeatures& features, std::uint16_t) {
+    const std::uint16_t bits = features.hooks.of(kReliefHook);
+    const bool has_relief = bits > kReliefFlat && features.maps.has(layout::kReliefSlot);
+    if (has_relief || bits == kReliefFlat) {
+        features.maps.remove(layout::kNormalSlot);
+    }
+    if (bits == kReliefFlat) {
+        features.maps.remove(layout::kDetailSlot);
+    }
+    if (!has_relief) {
+        features.maps.remove(layout::kReliefSlot);
+        features.hooks.set(kReliefHook, 0);
+    }
+}
+
+}  // namespace
+
+const SurfaceHook kReliefHook = {
+    .name = "relief",
+    .points = kReliefPoints,
+    .definitions = kReliefDefinitions,
+    .off_mesh = kReliefOffMesh,
+    .maps = 1u << layout::kReliefSlot,
+    .vertex_file = "lib/relief_vertex.glsl",
+    .surface_file = "lib/relief_surface.glsl",
+    .of_material = relief_of_material,
+    .add = add_relief,
+};
+
+}  // namespace limn

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "render/material/surface_hooks.h"
+
+#include <cstdint>
+
+namespace limn {
+
+// What the relief of a material (Material::detail) adds to the programs of surfaces.
+// lib/relief_surface.glsl explains the definitions.
+
+/// Bits of kReliefHook.
+enum ReliefFeature : std::uint16_t {
+    kReliefFlat = 1u << 0,  // no maps of normals
+    kReliefBump = 1u << 1,
+    kReliefParallax = 1u << 2,
+    kReliefLinear = 1u << 3,
+    kReliefCones = 1u << 4,
+    kReliefClosed = 1u << 5,
+    kReliefCurved = 1u << 6,
+    kReliefShifted = 1u << 7,  // maps are read at shifted texture coordinates
+    kReliefOffMesh = 1u << 8,  // fragments lie below the mesh
+};
+
+extern const SurfaceHook kReliefHook;
+
+}  // namespace limn

@@ -1,0 +1,158 @@
+// Relief below the mesh: the surface hooks that find the point of it that is visible. Definitions:
+//   RELIEF_MAP       the texture unit of the map
+//   RELIEF_PARALLAX  one lookup shifts the maps, and nothing else
+//   RELIEF_LINEAR    linear search and one secant step
+//   RELIEF_CONES     cone stepping
+//   RELIEF_CLOSED    the relief has a back surface; texels without a surface are holes
+//   RELIEF_CURVED    the ray bends with the mesh's quadric and may leave the relief: a hole
+//   RELIEF_BUMP      normals from differences of depth, and nothing else
+// Techniques: bump.height-field, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
+//     relief.parallax, relief.permutations, relief.planar, relief.silhouette, relief.tangent, shadow.relief-cast,
+//     shadow.relief-matrix, shadow.relief-receive
+
+#include "lib/view.glsl"
+
+#if defined(RELIEF_MAP) && !defined(LIT_AT_VERTICES)
+#define RELIEF
+#define FINE_NORMALS
+layout(location = 10) in vec4 relief_position;
+#ifdef RELIEF_CURVED
+layout(location = 11) in vec2 relief_curvature;
+#endif
+
+float relief_lod = 0.0;  // of undisplaced texture coordinates: those found by the search are not smooth
+#define RELIEF_TEXEL(at) textureLod(material_maps[RELIEF_MAP], vec3(at, map_layer(map_layers, kReliefSlot)), relief_lod)
+#include "relief_gpu.h"
+#include "relief_search_gpu.h"
+
+// Unit, away from the eye, of any projection.
+vec3 ray_through(vec3 position_ws, vec4 clip) {
+    mat4 rows = transpose(view.clip_from_world);
+    vec2 ndc = clip.xy / clip.w;
+    vec3 ray = cross(rows[0].xyz - ndc.x * rows[3].xyz, rows[1].xyz - ndc.y * rows[3].xyz);
+    // Depth is reversed: it falls along the ray.
+    float gain = dot(rows[2].xyz, ray) * clip.w - clip.z * dot(rows[3].xyz, ray);
+    return normalize(gain > 0.0 ? -ray : ray);
+}
+
+// What moves by a step along the surface, from its derivatives over the image.
+struct ReliefFrame {
+    vec3 normal;  // unit, toward the eye
+    vec3 dual_x;  // dot(step, dual_x) is the step in pixels along x
+    vec3 dual_y;
+};
+
+ReliefFrame relief_frame(vec3 normal) {
+    vec3 dx = dFdx(relief_position.xyz);
+    vec3 dy = dFdy(relief_position.xyz);
+    vec3 dual_x = cross(dy, normal);
+    vec3 dual_y = cross(normal, dx);
+    float area = dot(dx, dual_x);
+    float scale = abs(area) > 1e-30 ? 1.0 / area : 0.0;
+    return ReliefFrame(normal, dual_x * scale, dual_y * scale);
+}
+
+// Change of texture coordinates along a step.
+vec4 relief_travel(ReliefFrame frame, vec3 step_ws) {
+    return dot(step_ws, frame.dual_x) * dFdx(uv) + dot(step_ws, frame.dual_y) * dFdy(uv);
+}
+
+void find_relief_lod() {
+    vec2 size = vec2(textureSize(material_maps[RELIEF_MAP], 0).xy);
+    vec2 dx = map_gradient(kReliefSlot, dFdx(uv)) * size;
+    vec2 dy = map_gradient(kReliefSlot, dFdy(uv)) * size;
+    relief_lod = max(0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12)), 0.0);
+}
+#endif
+
+void relief_uv(inout vec4 uv) {
+#if defined(RELIEF) && !defined(RELIEF_BUMP)
+    vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
+    float depth = search.x * relief_position.w;
+    vec3 position_ws = relief_position.xyz + view.camera_ws.xyz;
+    vec4 clip = view.clip_from_world * vec4(position_ws, 1.0);
+    vec3 ray_ws = ray_through(position_ws, clip);
+    vec3 normal = normalize(normal_ws);
+    float down = -dot(ray_ws, normal);
+    ReliefFrame frame = relief_frame(normal);
+    find_relief_lod();
+    bool is_back = down <= 0.0;
+#if defined(RELIEF_CLOSED) || defined(RELIEF_CURVED)
+    // A back face has a hole where the ray into it, the other way, finds nothing.
+    ray_ws = is_back ? -ray_ws : ray_ws;
+    down = abs(down);
+#else
+    if (is_back) {
+        return;
+    }
+#endif
+#ifdef RELIEF_PARALLAX
+    float shift = depth * (RELIEF_TEXEL(map_coordinates(kReliefSlot, uv)).w - 0.5);  // not divided by the cosine: bounded
+    uv += relief_travel(frame, shift * (ray_ws + down * normal));
+#else
+    float limited = max(down, kMinReliefCosine);
+    vec2 range = vec2(depth / limited, 1.0);
+    float fall = 0.0;
+#ifdef RELIEF_CURVED
+    vec3 bitangent = cross(normal, tangent_ws.xyz) * tangent_ws.w;
+    vec2 along = vec2(dot(ray_ws, tangent_ws.xyz), dot(ray_ws, bitangent));
+    fall = dot(relief_curvature, along * along);
+    range = relief_range(limited, fall, depth);
+#endif
+    vec4 travel = relief_travel(frame, range.x * (ray_ws + down * normal));
+    ReliefRay ray = ReliefRay(
+        map_coordinates(kReliefSlot, uv), map_gradient(kReliefSlot, travel), limited * range.x / depth,
+        fall * range.x * range.x / depth);
+    int steps = int(search.y * mix(1.0, 0.35, down) + 0.5);
+#if defined(RELIEF_CONES)
+    float x = relief_search_cones(ray, steps, int(search.z));
+#elif defined(RELIEF_LINEAR)
+    float x = relief_search_linear(ray, steps);
+#elif defined(RELIEF_CLOSED)
+    float x = relief_search(ray, steps, int(search.z), true);
+#else
+    float x = relief_search(ray, steps, int(search.z), false);
+#endif
+#if defined(RELIEF_CLOSED)
+    surface_hole = x > 1.0;
+#elif defined(RELIEF_CURVED)
+    surface_hole = x > 1.0 && range.y == 0.0;
+#endif
+    if (is_back) {
+        return;
+    }
+    x = min(x, 1.0);
+    uv += travel * x;
+    surface_offset = ray_ws * (range.x * x);
+    vec4 moved = clip + view.clip_from_world * vec4(surface_offset, 0.0);
+    surface_depth = min(gl_FragCoord.z, moved.z / moved.w);
+#endif
+#endif
+}
+
+void relief_normal(inout vec3 normal) {
+#ifdef RELIEF
+#ifdef RELIEF_BUMP
+    // Slopes of the height over a texel, in meters of the mesh to either side (Blinn 1978).
+    find_relief_lod();
+    vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
+    vec2 at = map_coordinates(kReliefSlot, map_uv);
+    ReliefFrame frame = relief_frame(normalize(normal_ws));
+    vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
+    vec2 texel = exp2(relief_lod) / vec2(textureSize(material_maps[RELIEF_MAP], 0).xy);
+    vec2 slope_uv = vec2(
+        RELIEF_TEXEL(at + vec2(texel.x, 0.0)).w - RELIEF_TEXEL(at - vec2(texel.x, 0.0)).w,
+        RELIEF_TEXEL(at + vec2(0.0, texel.y)).w - RELIEF_TEXEL(at - vec2(0.0, texel.y)).w) / (2.0 * texel);
+    slope_uv *= search.x * relief_position.w;
+    // A step along the tangent changes uv by relief_travel(), so the depth by its product with the slope.
+    vec2 slope = vec2(
+        dot(slope_uv, map_gradient(kReliefSlot, relief_travel(frame, tangent_ws.xyz))),
+        dot(slope_uv, map_gradient(kReliefSlot, relief_travel(frame, bitangent))));
+    normal.xy += normal.z * slope * material_texel(1).w;
+#else
+    vec2 n = MAP_TEXEL(RELIEF_MAP, kReliefSlot).xy * 2.0 - 1.0;
+    float z = sqrt(max(1.0 - dot(n, n), 0.01));
+    normal.xy += normal.z * material_texel(1).w * n / z;  // slopes of heights add up
+#endif
+#endif
+}
