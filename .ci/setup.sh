@@ -4,7 +4,7 @@ packages=(
     g++ cmake ninja-build pkg-config ccache mold git ca-certificates
     libglm-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     libtinygltf-dev libopenexr-dev libopenimageio-dev libpng-dev libmeshoptimizer-dev nlohmann-json3-dev
-    libtbb-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
+    libtbb-dev libembree-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
     doctest-dev libbenchmark-dev libkissfft-dev
     glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
 )
@@ -27,7 +27,7 @@ name_missing() {
         done
     fi
     if command -v g++ >/dev/null 2>&1; then
-        for module in glm/glm.hpp nlohmann/json.hpp CLI/CLI.hpp doctest/doctest.h meshoptimizer.h; do
+        for module in glm/glm.hpp nlohmann/json.hpp CLI/CLI.hpp doctest/doctest.h meshoptimizer.h embree3/rtcore.h; do
             printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$module" | g++ -E -x c++ - >/dev/null 2>&1 || missing+=("$module")
         done
     fi
