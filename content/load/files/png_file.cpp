@@ -70,18 +70,24 @@ bool read_header(PngState& state) {
     return true;
 }
 
-/// Reads the pixels as RGBA with 8 bits into `rows`.
-bool read_rows(PngState& state) {
+/// Reads the pixels as RGBA with 8 or 16 bits into `rows`.
+bool read_rows(PngState& state, int bits) {
     if (setjmp(png_jmpbuf(state.png)) != 0) {
         return false;
     }
     png_set_expand(state.png);  // palettes, less than 8 bits, transparent colors
-    png_set_scale_16(state.png);
+    if (bits == 16) {
+        png_set_expand_16(state.png);
+        png_set_swap(state.png);  // the file is big endian
+    } else {
+        png_set_scale_16(state.png);
+    }
     png_set_gray_to_rgb(state.png);
-    png_set_add_alpha(state.png, 0xff, PNG_FILLER_AFTER);
+    png_set_add_alpha(state.png, bits == 16 ? 0xffff : 0xff, PNG_FILLER_AFTER);
     png_set_interlace_handling(state.png);
     png_read_update_info(state.png, state.info);
-    if (png_get_rowbytes(state.png, state.info) != static_cast<std::size_t>(state.width) * 4) {
+    if (png_get_rowbytes(state.png, state.info)
+        != static_cast<std::size_t>(state.width) * 4 * static_cast<std::size_t>(bits / 8)) {
         png_error(state.png, "unexpected row size");
     }
     png_read_image(state.png, state.rows.data());
@@ -148,7 +154,7 @@ Status write_values(
     return write_file(path, std::as_bytes(std::span(*bytes)));
 }
 
-Status read_png(PngState& state, const std::string& location, const ImageLimits& limits) {
+Status read_png(PngState& state, int bits, const std::string& location, const ImageLimits& limits) {
     if (state.info == nullptr || !read_header(state)) {
         return fail("{}: corrupt PNG image: {}", location, state.error);
     }
@@ -156,13 +162,30 @@ Status read_png(PngState& state, const std::string& location, const ImageLimits&
     if (!too_large.empty()) {
         return fail("{}: {}", location, too_large);
     }
-    const std::size_t row = static_cast<std::size_t>(state.width) * 4;
+    const std::size_t row =
+        static_cast<std::size_t>(state.width) * 4 * static_cast<std::size_t>(bits / 8);
     state.pixels.resize(row * static_cast<std::size_t>(state.height));
     fill_png_rows(state, state.pixels.data(), row);
-    if (!read_rows(state)) {
+    if (!read_rows(state, bits)) {
         return fail("{}: corrupt PNG image: {}", location, state.error);
     }
     return Done{};
+}
+
+/// The state after reading, with the pixels.
+Result<PngState> decode_rows(
+    std::span<const std::byte> bytes, int bits, const std::string& location,
+    const ImageLimits& limits) {
+    LIMN_TRY(check_png(bytes, location));
+    PngState state{.rest = bytes};
+    state.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, report_error, ignore_warning);
+    state.info = state.png != nullptr ? png_create_info_struct(state.png) : nullptr;
+    const Status read = read_png(state, bits, location, limits);
+    png_destroy_read_struct(&state.png, &state.info, nullptr);
+    if (!read) {
+        return read.error();
+    }
+    return state;
 }
 
 }  // namespace
@@ -186,20 +209,21 @@ png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pix
 
 Result<ImageData> decode_png(
     std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits) {
-    LIMN_TRY(check_png(bytes, location));
-    PngState state{.rest = bytes};
-    state.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, report_error, ignore_warning);
-    state.info = state.png != nullptr ? png_create_info_struct(state.png) : nullptr;
-    const Status read = read_png(state, location, limits);
-    png_destroy_read_struct(&state.png, &state.info, nullptr);
-    if (!read) {
-        return read.error();
-    }
+    PngState state = LIMN_TRY(decode_rows(bytes, 8, location, limits));
     ImageData image;
     image.name = location;
     image.width = state.width;
     image.height = state.height;
     image.pixels = std::move(state.pixels);
+    return image;
+}
+
+Result<Png16> decode_png16(
+    std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits) {
+    const PngState state = LIMN_TRY(decode_rows(bytes, 16, location, limits));
+    Png16 image = {.width = state.width, .height = state.height};
+    image.pixels.resize(state.pixels.size() / sizeof(std::uint16_t));
+    std::memcpy(image.pixels.data(), state.pixels.data(), state.pixels.size());
     return image;
 }
 

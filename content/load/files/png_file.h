@@ -37,4 +37,15 @@ png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pix
 [[nodiscard]] Result<ImageData> decode_png(
     std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits);
 
+/// RGBA, rows from top to bottom.
+struct Png16 {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint16_t> pixels = {};
+};
+
+/// The same with 16 bits; of 8 bits, 255 becomes 65535.
+[[nodiscard]] Result<Png16> decode_png16(
+    std::span<const std::byte> bytes, const std::string& location, const ImageLimits& limits);
+
 }  // namespace limn
