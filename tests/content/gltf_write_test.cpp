@@ -251,8 +251,14 @@ TEST_CASE("gltf write: what is not written is refused") {
         return bytes ? "it writes" : bytes.error().message;
     };
     CHECK(
-        message([](GltfScene& s) { s.images.resize(1); })
-        == "scene: found 1 images, expected none: they are not written");
+        message([](GltfScene& s) { s.images.resize(1); }).find("0 x 0 pixels")
+        != std::string::npos);
+    CHECK(
+        message([](GltfScene& s) {
+            s.images.emplace_back().name = "sky";
+            s.images[0].format = PixelFormat::Rgba16F;
+        })
+        == "scene: found floats in the image \"sky\", expected 8 bits: glTF has no others");
     CHECK(
         message([](GltfScene& s) { s.nodes[1].has_camera = true; }).find("\"strip\"")
         != std::string::npos);
@@ -265,6 +271,48 @@ TEST_CASE("gltf write: what is not written is refused") {
         message([](GltfScene& s) { s.meshes[0].regions[0].name = "Brow!"; })
         == "scene: found the region \"Brow!\", expected a name of a-z, 0-9 and _");
     CHECK(message([](GltfScene&) {}) == "it writes");
+}
+
+TEST_CASE("gltf write: images, textures and how they are placed come back") {
+    GltfScene scene = make_scene();
+    for (int i = 0; i < 2; ++i) {
+        ImageData& image = scene.images.emplace_back();
+        image.name = i == 0 ? "paint" : "bumps";
+        image.width = 2;
+        image.height = 1;
+        image.srgb = i == 0;
+        const auto code = static_cast<std::uint8_t>(100 * i);
+        image.pixels = {code, 1, 2, 255, 3, 4, code, 128};
+    }
+    Material& material = scene.materials[0];
+    material.base_color_texture.image = {0};
+    material.normal_texture.image = {1};
+    material.normal_texture.wrap_u = Wrap::Mirror;
+    material.normal_texture.scale = {2, 3};
+    material.normal_texture.rotation = 0.5f;
+    material.normal_scale = 0.75f;
+    material.occlusion_texture.image = {1};
+    material.occlusion_texture.nearest = true;
+    material.occlusion_strength = 0.5f;
+    const auto bytes = write_glb(scene);
+    REQUIRE_MESSAGE(bytes.ok(), (bytes ? std::string() : bytes.error().message));
+    const auto parsed = parse_gltf(*bytes, "scene.glb", "");
+    REQUIRE_MESSAGE(parsed.ok(), (parsed ? std::string() : parsed.error().message));
+    const Material& read = parsed->materials[0];
+    REQUIRE(parsed->images.size() == 2);
+    const ImageData& paint = parsed->images[read.base_color_texture.image.index];
+    const ImageData& bumps = parsed->images[read.normal_texture.image.index];
+    CHECK(paint.srgb);
+    CHECK(paint.pixels == scene.images[0].pixels);
+    CHECK_FALSE(bumps.srgb);
+    CHECK(bumps.pixels == scene.images[1].pixels);
+    CHECK(read.normal_texture.wrap_u == Wrap::Mirror);
+    CHECK(read.normal_texture.scale == Vec2(2, 3));
+    CHECK(read.normal_texture.rotation == 0.5f);
+    CHECK(read.normal_scale == 0.75f);
+    CHECK(read.occlusion_texture.image.index == read.normal_texture.image.index);
+    CHECK(read.occlusion_texture.nearest);
+    CHECK(read.occlusion_strength == 0.5f);
 }
 
 TEST_CASE("gltf write: a file is complete or not there") {

@@ -2,6 +2,7 @@
 
 #include "content/load/files/atomic_file.h"
 #include "content/load/gltf/gltf_file.h"
+#include "content/load/gltf/gltf_write_textures.h"
 #include "ecs/base/text.h"
 
 #include <algorithm>
@@ -107,6 +108,7 @@ class GlbWriter {
 
     Result<std::vector<std::byte>> write() {
         LIMN_TRY(check());
+        LIMN_TRY(append_images(model_, scene_));
         number_nodes();
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
             LIMN_TRY(add_node(i));
@@ -132,11 +134,6 @@ class GlbWriter {
 
   private:
     Status check() const {
-        if (!scene_.images.empty()) {
-            return fail(
-                "{}: found {} images, expected none: they are not written", scene_.name,
-                scene_.images.size());
-        }
         for (const GltfNode& node : scene_.nodes) {
             if (node.has_camera || node.light.index() != 0 || !node.components.empty()) {
                 return fail(
@@ -479,8 +476,21 @@ class GlbWriter {
         if (source.alpha_mode == AlphaMode::Mask) {
             material.alphaCutoff = source.alpha_cutoff;
         }
+        tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
+        write_texture(source.base_color_texture, pbr.baseColorTexture);
+        write_texture(source.metal_rough_texture, pbr.metallicRoughnessTexture);
+        write_texture(source.normal_texture, material.normalTexture);
+        material.normalTexture.scale = source.normal_scale;
+        write_texture(source.occlusion_texture, material.occlusionTexture);
+        material.occlusionTexture.strength = source.occlusion_strength;
+        write_texture(source.emission_texture, material.emissiveTexture);
         model_.materials.push_back(std::move(material));
         return Done{};
+    }
+
+    template <typename Info>
+    void write_texture(const TextureSlot& slot, Info& info) {
+        write_texture_slot(model_, slot, info, extensions_);
     }
 
     void use(tinygltf::Material& material, const char* name, tinygltf::Value::Object values) {
