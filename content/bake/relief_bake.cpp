@@ -38,7 +38,7 @@ ReliefSample cast_relief(
     sample.hit = true;
     sample.texel.depth = std::clamp(front->t - kLead, 0.0f, 1.0f);
     Vec3 normal = normal_at(tile, *front);
-    normal = front->front ? normal : -normal;  // of an open mesh, seen from behind
+    normal = !front->front && normal.z < 0 ? -normal : normal;  // of a sheet seen from behind
     normal.z = std::max(normal.z, 0.0f);
     sample.texel.normal = normalize_or(normal, Vec3(0, 0, 1));
     if (layout == ReliefLayout::Double) {

@@ -234,56 +234,68 @@ TEST_CASE("detail bake: tangent frames invert what the renderer does") {
 }
 
 TEST_CASE("detail bake: of several surfaces the nearest that faces the same way counts") {
-    const MeshData low = make_square(0);
-    MeshData high = make_square(0.08f);  // outside, tilted
-    high.positions[1].z = high.positions[3].z = 0.1f;
-    generate_normals(high);
-    MeshData near = make_square(-0.02f);  // nearer, but turned away
-    for (std::size_t i = 0; i + 3 <= near.indices.size(); i += 3) {
-        std::swap(near.indices[i], near.indices[i + 1]);
+    for (const float side : {1.0f, -1.0f}) {  // the one that faces it outside, then inside
+        MeshData high = make_square(0.08f * side);
+        high.positions[1].z += 0.02f;  // rises to the right
+        high.positions[3].z += 0.02f;
+        generate_normals(high);
+        MeshData away = make_square(-0.02f * side);
+        for (std::size_t i = 0; i + 3 <= away.indices.size(); i += 3) {
+            std::swap(away.indices[i], away.indices[i + 1]);
+        }
+        const auto first = static_cast<std::uint32_t>(high.positions.size());
+        high.positions.insert(high.positions.end(), away.positions.begin(), away.positions.end());
+        high.normals.insert(high.normals.end(), 4, Vec3(0, 0, -1));
+        for (const std::uint32_t i : away.indices) {
+            high.indices.push_back(first + i);
+        }
+        const DetailBake baked = bake(make_square(0), high, kSmall);
+        CHECK((baked.height.texels[0].x > 0.5f) == (side > 0));
+        CHECK(decode_normal(Vec3(baked.normal.texels[0])).x < -0.01f);
     }
-    for (Vec3& n : near.normals) {
-        n = -n;
+}
+
+/// A cube of edge 1 around the origin with flat sides, each with a sixth of the image.
+MeshData make_cube_with_charts() {
+    MeshData cube;
+    for (int side = 0; side < 6; ++side) {
+        Vec3 n(0);
+        n[side / 2] = side % 2 == 0 ? 1.0f : -1.0f;
+        const Vec3 t = any_perpendicular(n);
+        const Vec3 b = glm::cross(n, t);
+        const auto first = static_cast<std::uint32_t>(cube.positions.size());
+        for (const Vec2 uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1)}) {
+            cube.positions.push_back(0.5f * n + (uv.x - 0.5f) * t + (0.5f - uv.y) * b);
+            cube.normals.push_back(n);
+            cube.uvs.emplace_back((uv.x + static_cast<float>(side)) / 6, uv.y);
+        }
+        for (const std::uint32_t i : {0u, 2u, 1u, 1u, 2u, 3u}) {
+            cube.indices.push_back(first + i);
+        }
     }
-    const auto first = static_cast<std::uint32_t>(high.positions.size());
-    high.positions.insert(high.positions.end(), near.positions.begin(), near.positions.end());
-    high.normals.insert(high.normals.end(), near.normals.begin(), near.normals.end());
-    for (const std::uint32_t i : near.indices) {
-        high.indices.push_back(first + i);
-    }
-    const DetailBake baked = bake(low, high, kSmall);
-    CHECK(baked.height.texels[0].x > 0.5f);
-    CHECK(decode_normal(Vec3(baked.normal.texels[0])).x < -0.01f);
+    generate_tangents(cube);
+    return cube;
 }
 
 TEST_CASE("detail bake: hard edges leave no gap between the lines of two faces") {
-    const MeshData low = make_box({.size = {1, 1, 1}});  // every side shows the whole image
-    MeshData cage = low;
-    // Six charts, side by side: the sides of a box share one otherwise.
-    for (std::size_t v = 0; v < cage.uvs.size(); ++v) {
-        const Vec3 n = cage.normals[v];
-        const int side = (std::abs(n.x) > 0.5f   ? 0
-                          : std::abs(n.y) > 0.5f ? 2
-                                                 : 4)
-                         + (n.x + n.y + n.z > 0 ? 1 : 0);
-        cage.uvs[v].x = (cage.uvs[v].x + static_cast<float>(side)) / 6;
-    }
-    generate_tangents(cage);
-    const MeshData high = make_sphere({.radius = 0.8f, .segments = 100, .rings = 50});
+    // Along the normals of the sides, lines from near a corner would meet a ball around the cube at
+    // (0.37, 0.5, 0.5) / 0.8; along averaged ones they meet its diagonal.
+    const MeshData high = make_sphere({.radius = 0.8f, .segments = 200, .rings = 100});
     DetailSettings settings = kSmall;
-    settings.width = 96;
+    settings.width = 6 * 32;
+    settings.height = 32;
     settings.distance = 0.5f;
     settings.object_space = true;
-    const DetailBake baked = bake(cage, high, settings);
+    const DetailBake baked = bake(make_cube_with_charts(), high, settings);
     CHECK(baked.report.missed == 0);
     CHECK(baked.report.from_point == 0);
-    // Normals of all directions: those near the corners of the cube, too.
-    float corner = 0;
-    for (const Vec4& texel : baked.normal.texels) {
-        const Vec3 n = glm::abs(decode_normal(Vec3(texel)));
-        corner = std::max(corner, std::min({n.x, n.y, n.z}));
+    CHECK(baked.report.overlapping == 0);
+    for (int k = 0; k < 24; ++k) {  // the corners of all sides
+        const int x = 32 * (k / 4) + 31 * (k % 2);
+        const int y = 31 * (k / 2 % 2);
+        const Vec3 n = glm::abs(decode_normal(Vec3(baked.normal.texels[baked.normal.at(x, y)])));
+        CHECK(std::min({n.x, n.y, n.z}) > 0.55f);
     }
-    CHECK(corner > 0.5f);
 }
 
 TEST_CASE(

@@ -236,6 +236,10 @@ TEST_CASE("odd: the index map replaces acos" * technique("odd.index-map")) {
             Vec4(bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]) / 255.0f;
         CHECK((exact.texels[i].z >= 0 && exact.texels[i].z <= 0.785f));
         CHECK((exact.texels[i].w >= 0 && exact.texels[i].w <= 0.785f));
+        const Vec2 by_hand = {
+            exact.texels[i].x + 0.005f * exact.texels[i].z,
+            exact.texels[i].y + 0.005f * exact.texels[i].w};
+        CHECK(glm::length(by_hand - decode_odd_index(exact.texels[i])) < 1e-6f);
         const Vec2 difference =
             decode_odd_index(stored.texels[i]) - decode_odd_index(exact.texels[i]);
         CHECK(std::max(std::abs(difference.x), std::abs(difference.y)) <= 2.1e-5f);
