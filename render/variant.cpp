@@ -82,7 +82,7 @@ ProgramVariants ProgramVariants::fullscreen(gpu::Device& device, const char* fra
 
 const gpu::Program* ProgramVariants::get(const Variant& variant, const SurfaceFeatures& features) {
     const std::uint64_t key = variant.key() ^ features.bits * 0xd6e8feb86659fd93ull
-                              ^ features.maps.bits() * 0x9e3779b97f4a7c15ull
+                              ^ features.maps.key() * 0x9e3779b97f4a7c15ull
                               ^ features.hooks.key() * 0xff51afd7ed558ccdull;
     if (const auto found = entries_.find(key); found != entries_.end()) {
         const Entry& entry = found->second;

@@ -1,17 +1,20 @@
 #include "render/environment/environment_pass.h"
 
 #include "ecs/world.h"
+#include "render/environment/sheen_albedo.h"
 #include "render/gpu/device.h"
 #include "render/light/light_list.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
 #include "render/shaders/environment_gpu.h"
+#include "render/shaders/material_layers_gpu.h"
 
 namespace limn {
 namespace {
 
 constexpr int kSpecularAlbedoSize = 64;
+constexpr int kSheenAlbedoSize = 64;
 
 /// Without the resource nothing surrounds the scene; a missing panorama is magenta, as on surfaces.
 Environment displayed_environment(const FrameData& frame) {
@@ -60,6 +63,14 @@ EnvironmentEffect::create(gpu::Device& device, const RenderSettings& settings) {
 }
 
 void EnvironmentEffect::collect(FrameData& frame) {
+    if ((frame.materials->layers() & kSheenLayer) != 0 && !sheen_albedo) {
+        sheen_albedo.emplace(
+            "sheen albedo",
+            gpu::TextureDesc{
+                .format = GL_R32F, .width = kSheenAlbedoSize, .height = kSheenAlbedoSize});
+        const std::vector<float> table = make_sheen_albedo(kSheenAlbedoSize);
+        sheen_albedo->upload<float>(table, GL_RED, GL_FLOAT);
+    }
     auto& published = frame.data.publish<SceneEnvironment>();
     published.settings = displayed_environment(frame);
     if (frame.assets_replaced) {
@@ -98,6 +109,11 @@ bool EnvironmentEffect::prepare(const FrameData& frame, ViewData& view) {
     view.lighting.add_binding<[](PassContext& context, const gpu::Texture& table) {
         context.device().bind_texture(layout::kSpecularAlbedoUnit, table);
     }>(specular_albedo);
+    if ((frame.materials->layers() & kSheenLayer) != 0) {
+        view.lighting.add_binding<[](PassContext& context, const gpu::Texture& table) {
+            context.device().bind_texture(layout::kSheenAlbedoUnit, table);
+        }>(*sheen_albedo);
+    }
     return true;
 }
 

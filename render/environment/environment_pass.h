@@ -18,7 +18,9 @@ namespace limn {
 struct EnvironmentEffect {
     PanoramaPass panorama;
     ReflectionPass reflection;
-    gpu::Texture specular_albedo;        ///< make_specular_albedo()
+    gpu::Texture specular_albedo;  ///< make_specular_albedo()
+    /// make_sheen_albedo(), once some material has sheen.
+    std::optional<gpu::Texture> sheen_albedo = {};
     std::optional<Environment> current;  ///< that the maps show
     layout::EnvironmentBlock block{};
 

@@ -9,7 +9,9 @@ namespace limn {
 struct Gbuffer {
     TextureId surface;   ///< RGBA32UI
     TextureId material;  ///< R32UI: index of the material's record; only valid() where lighting
-                         ///< passes read it
+                         ///< passes read it; RG32UI with `layers`
+    TextureId layers;    ///< RGBA32UI: lib/surface_layers.glsl; only valid() where some material
+                         ///< has layers
     TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 for background; plus 8 bits of
                          ///< stencil, all 0, if needs_stencil()
     TextureId velocity;  ///< RG16F or RG32F: current uv - previous uv, also for the sky; not

@@ -110,8 +110,14 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
         writes.push_back(cleared(view.gbuffer.velocity));
     }
     if (!forward && reads_material_records(frame.materials->shading_models())) {
-        view.gbuffer.material = create("gbuffer.material", GL_R32UI);
+        const bool layered = frame.materials->layers() != 0;
+        view.gbuffer.material =
+            create("gbuffer.material", static_cast<GLenum>(layered ? GL_RG32UI : GL_R32UI));
         writes.push_back(discarded(view.gbuffer.material));
+        if (layered) {
+            view.gbuffer.layers = create("gbuffer.layers", GL_RGBA32UI);
+            writes.push_back(discarded(view.gbuffer.layers));
+        }
     }
     writes.push_back(cleared(view.gbuffer.depth));
     graph.add_pass(
@@ -120,6 +126,7 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             Variant variant;
             variant.add_if(clipped, "CLIPPED");
             variant.add_if(view.gbuffer.material.valid(), "MATERIAL_RECORDS");
+            variant.add_if(view.gbuffer.layers.valid(), "LAYER_TARGETS");
             bind_view(context, view);
             draw_runs(
                 context, view, view.data.get<InstanceList>().opaque, programs,

@@ -184,6 +184,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
     variant.add_if(!lights.ranges.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
+    add_layers(variant, frame.materials->layers());
     return true;
 }
 

@@ -1,6 +1,7 @@
 #include "render/light/lighting.h"
 
 #include "render/shaders/gbuffer_gpu.h"
+#include "render/shaders/material_layers_gpu.h"
 #include "render/shaders/shadow_gpu.h"
 #include "render/view_block.h"
 
@@ -24,6 +25,9 @@ std::vector<Use> surface_reads(const ViewData& view, Use depth) {
         lighting_reads(view, {sampled(view.gbuffer.surface, layout::kGbufferUnit), depth});
     if (view.gbuffer.material.valid()) {
         reads.push_back(sampled(view.gbuffer.material, layout::kGbufferMaterialUnit));
+    }
+    if (view.gbuffer.layers.valid()) {
+        reads.push_back(sampled(view.gbuffer.layers, layout::kGbufferLayersUnit));
     }
     return reads;
 }

@@ -66,7 +66,7 @@ LobeBounds find_lobe_bounds(const RenderItems& items, const RenderView& view) {
             }
             const std::uint32_t model =
                 materials.model_of(materials.record_of(block.surfaces[i].material));
-            const std::uint32_t lobe = lobe_number(kShadingModels[model - 1].model);
+            const std::uint32_t lobe = lobe_number(static_cast<ShadingModel>(model - 1));
             grow_pixels(
                 all[lobe], lobe == kBase ? all_pixels(view) : pixels_of(view, block.box(i)));
         }

@@ -3,6 +3,7 @@
 #include "ecs/components/surface.h"
 #include "render/material/diffusion_profile.h"
 #include "render/material/hair_lobes.h"
+#include "render/material/material_layers.h"
 #include "render/material/material_maps.h"
 #include "render/material/skin_tone.h"
 #include "render/shaders/material_blocks_gpu.h"
@@ -43,7 +44,7 @@ std::optional<layout::ClearBlock> make_clear_block(const Material& m) {
     }
     const Vec3 left = glm::max(m.attenuation_color, Vec3(1e-6f));
     return layout::ClearBlock{
-        .medium = {m.transmission, m.refractive_index, m.thickness, 0},
+        .medium = {m.transmission, m.refractive_index, m.thickness, m.dispersion},
         .absorption = Vec4(-glm::log(left) / std::max(m.attenuation_distance, 1e-6f), 0)};
 }
 
@@ -96,17 +97,18 @@ std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) 
 struct BlockKind {
     std::uint32_t number;
     std::uint32_t texels;  ///< maximum size
+    bool is_last;          ///< of a shading model after whose block there is no other
     /// Appends the block of a material; false if it has none.
     bool (*append)(const Material&, std::vector<Vec4>&);
 };
 
 template <auto make>
-constexpr BlockKind block_kind(std::uint32_t number) {
+constexpr BlockKind block_kind(std::uint32_t number, bool is_last) {
     using Block = typename decltype(make(Material()))::value_type;
     static_assert(sizeof(Block) % sizeof(Vec4) == 0);
     constexpr std::size_t kTexels = sizeof(Block) / sizeof(Vec4);
     return {
-        number, static_cast<std::uint32_t>(kTexels),
+        number, static_cast<std::uint32_t>(kTexels), is_last,
         [](const Material& material, std::vector<Vec4>& blocks) {
             const std::optional<Block> block = make(material);
             if (block) {
@@ -117,27 +119,32 @@ constexpr BlockKind block_kind(std::uint32_t number) {
         }};
 }
 
+/// In the order in a material; the last ones may end beyond the range of offsets.
 constexpr BlockKind kKinds[] = {
-    {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
-    block_kind<make_classic_block>(layout::kClassicBlock),
-    block_kind<make_skin_block>(layout::kSkinBlock),
-    block_kind<make_lafortune_block>(layout::kLafortuneBlock),
-    block_kind<make_clear_block>(layout::kClearBlock),
-    block_kind<make_block_of_hair>(layout::kHairBlock),
-    block_kind<make_relief_block>(layout::kReliefBlock),
-    block_kind<make_subsurface_block>(layout::kSubsurfaceBlock),
+    {layout::kUvBlock, 2 * layout::kMaxMapSlots, false, append_uv_block},
+    block_kind<make_clear_block>(layout::kClearBlock, false),
+    block_kind<make_layers_block>(layout::kLayersBlock, false),
+    block_kind<make_relief_block>(layout::kReliefBlock, false),
+    block_kind<make_classic_block>(layout::kClassicBlock, false),
+    block_kind<make_skin_block>(layout::kSkinBlock, true),
+    block_kind<make_lafortune_block>(layout::kLafortuneBlock, true),
+    block_kind<make_block_of_hair>(layout::kHairBlock, true),
+    block_kind<make_subsurface_block>(layout::kSubsurfaceBlock, true),
 };
 
-/// Whether the offsets can hold a material with all blocks, and each kind has its number.
+/// Whether the offsets can hold a material with all blocks, and each kind has a number of its own.
 constexpr bool kinds_fit() {
     std::uint32_t texels = 0;
-    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
-        if (kKinds[i].number != i || texels >> layout::kBlockOffsetBits != 0) {
+    std::uint32_t numbers = 0;
+    for (const BlockKind& kind : kKinds) {
+        if (kind.number >= layout::kMaxBlockKinds || (numbers >> kind.number & 1u) != 0
+            || texels >> layout::kBlockOffsetBits != 0) {
             return false;
         }
-        texels += kKinds[i].texels;
+        numbers |= 1u << kind.number;
+        texels += kind.is_last ? 0 : kind.texels;
     }
-    return std::size(kKinds) <= layout::kMaxBlockKinds;
+    return true;
 }
 static_assert(kinds_fit());
 

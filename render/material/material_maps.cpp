@@ -21,6 +21,24 @@ constexpr MapSlot kSlots[] = {
     {layout::kDetailSlot, "DETAIL_MAP", &Material::detail_texture, false},
     {layout::kThicknessSlot, "THICKNESS_MAP", &Material::thickness_texture, false},
     {layout::kReliefSlot, "RELIEF_MAP", &Material::relief_texture, true},
+    {layout::kClearcoatSlot, "CLEARCOAT_MAP", &Material::clearcoat_texture, false, kCoatLayer},
+    {layout::kClearcoatRoughnessSlot, "CLEARCOAT_ROUGHNESS_MAP",
+     &Material::clearcoat_roughness_texture, false, kCoatLayer},
+    {layout::kClearcoatNormalSlot, "CLEARCOAT_NORMAL_MAP", &Material::clearcoat_normal_texture,
+     false, kCoatLayer},
+    {layout::kSheenSlot, "SHEEN_MAP", &Material::sheen_texture, false, kSheenLayer},
+    {layout::kSheenRoughnessSlot, "SHEEN_ROUGHNESS_MAP", &Material::sheen_roughness_texture, false,
+     kSheenLayer},
+    {layout::kSpecularWeightSlot, "SPECULAR_WEIGHT_MAP", &Material::specular_weight_texture, false,
+     kSpecularLayer},
+    {layout::kSpecularTintSlot, "SPECULAR_TINT_MAP", &Material::specular_tint_texture, false,
+     kSpecularLayer},
+    {layout::kAnisotropySlot, "ANISOTROPY_MAP", &Material::anisotropy_texture, false,
+     kAnisotropyLayer},
+    {layout::kIridescenceSlot, "IRIDESCENCE_MAP", &Material::iridescence_texture, false,
+     kFilmLayer},
+    {layout::kIridescenceThicknessSlot, "IRIDESCENCE_THICKNESS_MAP",
+     &Material::iridescence_thickness_texture, false, kFilmLayer},
 };
 
 constexpr bool numbers_fit() {
@@ -35,7 +53,7 @@ static_assert(numbers_fit());
 
 const TextureSlot* first_used(const Material& m) {
     for (const MapSlot& slot : kSlots) {
-        if (is_used(m.*slot.texture)) {
+        if (has_map(m, slot)) {
             return &(m.*slot.texture);
         }
     }
@@ -56,6 +74,11 @@ std::span<const MapSlot> map_slots() {
     return kSlots;
 }
 
+bool has_map(const Material& material, const MapSlot& slot) {
+    return is_used(material.*slot.texture)
+           && (slot.layer == 0 || (layers_of(material) & slot.layer) != 0);
+}
+
 std::optional<std::uint32_t> MapBindings::add(const MapBinding& map) {
     const auto end = bindings_.begin() + count_;
     const auto found = std::find(bindings_.begin(), end, map);
@@ -68,9 +91,11 @@ std::optional<std::uint32_t> MapBindings::add(const MapBinding& map) {
     return static_cast<std::uint32_t>(found - bindings_.begin());
 }
 
-void set_layer(Vec4& maps, std::uint32_t slot, std::uint32_t layer) {
+void set_layer(std::span<Vec4> maps, std::uint32_t slot, std::uint32_t layer) {
     const std::uint32_t shift = layout::kLayerBits * (slot % layout::kLayersPerFloat);
-    maps[static_cast<int>(slot / layout::kLayersPerFloat)] += static_cast<float>(layer << shift);
+    const std::uint32_t component = slot % layout::kLayersPerTexel / layout::kLayersPerFloat;
+    maps[slot / layout::kLayersPerTexel][static_cast<int>(component)] +=
+        static_cast<float>(layer << shift);
 }
 
 bool same_uv(const TextureSlot& a, const TextureSlot& b) {
@@ -84,7 +109,7 @@ std::uint32_t uv_feature(const Material& m) {
         return 0;
     }
     for (const MapSlot& slot : kSlots) {
-        if (is_used(m.*slot.texture) && !same_uv(m.*slot.texture, *first)) {
+        if (has_map(m, slot) && !same_uv(m.*slot.texture, *first)) {
             return kUvMaps;
         }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/surface.h"
+#include "render/material/material_layers.h"
 #include "render/shaders/material_maps_gpu.h"
 
 #include <array>
@@ -19,7 +20,8 @@ struct MapSlot {
     std::uint32_t number;
     const char* definition;  ///< of shaders: its value is the texture unit
     TextureSlot Material::*texture;
-    bool trilinear;  ///< also on a software OpenGL
+    bool trilinear;            ///< also on a software OpenGL
+    MaterialLayers layer = 0;  ///< that reads it; 0: all materials do
 };
 /// By number.
 [[nodiscard]] std::span<const MapSlot> map_slots();
@@ -28,24 +30,29 @@ struct MapSlot {
     return slot.image.index != kNoAsset;
 }
 
+/// Whether a material has and reads this map.
+[[nodiscard]] bool has_map(const Material& material, const MapSlot& slot);
+
 /// Slots with their texture units. Four bits per slot: unit + 1, or 0 if there is no such map.
 class MapUnits {
   public:
     void set(std::uint32_t slot, std::uint32_t unit) {
         remove(slot);
-        bits_ |= std::uint64_t{unit + 1} << 4 * slot;
+        bits_[slot / kPerWord] |= std::uint64_t{unit + 1} << shift(slot);
     }
-    void remove(std::uint32_t slot) { bits_ &= ~(std::uint64_t{15} << 4 * slot); }
-    [[nodiscard]] bool has(std::uint32_t slot) const { return (bits_ >> 4 * slot & 15) != 0; }
+    void remove(std::uint32_t slot) {
+        bits_[slot / kPerWord] &= ~(std::uint64_t{15} << shift(slot));
+    }
+    [[nodiscard]] bool has(std::uint32_t slot) const { return nibble(slot) != 0; }
     /// Whether any of `slots`, a set of bits, exists.
     [[nodiscard]] bool has_any(std::uint32_t slots) const {
         MapUnits some;
         some.add(*this, slots);
-        return some.bits_ != 0;
+        return some != MapUnits{};
     }
     /// The map must exist.
     [[nodiscard]] std::uint32_t unit(std::uint32_t slot) const {
-        return static_cast<std::uint32_t>(bits_ >> 4 * slot & 15) - 1;
+        return static_cast<std::uint32_t>(nibble(slot)) - 1;
     }
     /// Adds those of `other` that are in `slots`, a set of bits.
     void add(const MapUnits& other, std::uint32_t slots) {
@@ -62,13 +69,20 @@ class MapUnits {
             }
         }
     }
-    [[nodiscard]] std::uint64_t bits() const { return bits_; }
+    /// A hash.
+    [[nodiscard]] std::uint64_t key() const { return bits_[0] ^ bits_[1] * 0xc2b2ae3d27d4eb4full; }
     bool operator==(const MapUnits&) const = default;
 
   private:
-    std::uint64_t bits_ = 0;
+    static constexpr std::uint32_t kPerWord = 16;
+    [[nodiscard]] static std::uint32_t shift(std::uint32_t slot) { return 4 * (slot % kPerWord); }
+    [[nodiscard]] std::uint64_t nibble(std::uint32_t slot) const {
+        return bits_[slot / kPerWord] >> shift(slot) & 15;
+    }
+
+    std::array<std::uint64_t, 2> bits_ = {};
 };
-static_assert(4 * layout::kMaxMapSlots <= 64 && layout::kMapUnits < 15);
+static_assert(layout::kMaxMapSlots <= 2 * 16 && layout::kMapUnits < 15);
 
 /// A texture array and the sampler of a map that reads it.
 struct MapBinding {
@@ -94,7 +108,7 @@ class MapBindings {
 };
 
 /// Sets the layer of a slot in MaterialRecord::maps, which must still be 0.
-void set_layer(Vec4& maps, std::uint32_t slot, std::uint32_t layer);
+void set_layer(std::span<Vec4> maps, std::uint32_t slot, std::uint32_t layer);
 
 /// Whether both use the same set of texture coordinates and the same transform.
 [[nodiscard]] bool same_uv(const TextureSlot& a, const TextureSlot& b);

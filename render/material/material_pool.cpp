@@ -67,6 +67,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     models_.clear();
     textures_.clear();
     shading_models_ = 0;
+    layers_ = 0;
     diffuses_ = false;
     curves_ = false;
     add_material(Material{});
@@ -102,7 +103,7 @@ void MaterialPool::add_maps(
     MapBindings bindings;
     for (const MapSlot& slot : map_slots()) {
         const TextureSlot& texture = material.*slot.texture;
-        if (!is_used(texture)) {
+        if (!has_map(material, slot)) {
             continue;
         }
         if (slot.number == layout::kOcclusionSlot && shares_occlusion(material)) {
@@ -139,8 +140,12 @@ void MaterialPool::add_material(const Material& material) {
     batch.features.bits |= material.shading == ShadingModel::Hair ? kStrands : 0u;
     if (material.transmission > 0) {
         batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
+        batch.features.bits |= material.thickness > 0 && material.dispersion > 0 ? kDispersion : 0u;
     }
     batch.features.hooks = material_hooks(material);
+    const MaterialLayers layers = layers_of(material);
+    batch.features.bits |= layers != 0 ? kLayered : 0u;
+    batch.features.bits |= (layers & kAnisotropyLayer) != 0 ? kAnisotropic : 0u;
     add_maps(material, batch, record);
 
     const auto same = [&](const SurfaceBatch& b) {
@@ -153,9 +158,11 @@ void MaterialPool::add_material(const Material& material) {
         batches_.push_back(batch);
     }
     records_.push_back(record);
-    models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
-    shading_models_ |= 1u << stored_number(material.shading);
     curves_ = curves_ || material.detail == SurfaceDetail::Silhouette;
+    const std::uint32_t model = stored_number(layers != 0 ? kLayeredModel : material.shading);
+    models_.push_back(static_cast<std::uint8_t>(model));
+    shading_models_ |= 1u << model;
+    layers_ |= layers;
     diffuses_ =
         diffuses_ || (material.shading == ShadingModel::Subsurface && material.scatter != Vec3(0));
 }

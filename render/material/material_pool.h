@@ -5,6 +5,7 @@
 #include "render/gpu/buffer_texture.h"
 #include "render/gpu/texture.h"
 #include "render/material/image_pool.h"
+#include "render/material/material_layers.h"
 #include "render/material/material_maps.h"
 #include "render/material/shading_models.h"
 #include "render/material/surface_features.h"
@@ -51,12 +52,14 @@ class MaterialPool {
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
     /// Counts the changes of records and batches.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
-    /// stored_number() of its shading model.
+    /// stored_number() of its shading model, kLayeredModel for one with layers.
     [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
     /// The models that some material uses.
     [[nodiscard]] ShadingModelSet shading_models() const { return shading_models_; }
+    /// The layers that some material has.
+    [[nodiscard]] MaterialLayers layers() const { return layers_; }
     /// Whether some material has subsurface scattering (subsurface_pass.h).
     [[nodiscard]] bool diffuses() const { return diffuses_; }
 
@@ -93,6 +96,7 @@ class MaterialPool {
     std::uint64_t material_version_ = 0;
     std::uint64_t revision_ = 0;
     ShadingModelSet shading_models_ = 0;
+    MaterialLayers layers_ = 0;
     bool diffuses_ = false;
     bool curves_ = false;
 };

@@ -13,6 +13,7 @@ constexpr unsigned kMirrors = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
 constexpr unsigned kClassic =
     bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
 constexpr unsigned kHair = bit(ShadingModel::Hair);
+constexpr unsigned kLayers = bit(ShadingModel::Pbr);  // material_layers.h
 
 /// A field that only some models read, and those models.
 struct FieldReaders {
@@ -36,6 +37,27 @@ constexpr FieldReaders kFieldReaders[] = {
     {"roughness_across", kHair},
     {"scale_tilt", kHair},
     {"hair_scatter", kHair},
+    {"clearcoat", kLayers},
+    {"clearcoat_roughness", kLayers},
+    {"clearcoat_texture", kLayers},
+    {"clearcoat_roughness_texture", kLayers},
+    {"clearcoat_normal_texture", kLayers},
+    {"sheen", kLayers},
+    {"sheen_roughness", kLayers},
+    {"sheen_texture", kLayers},
+    {"sheen_roughness_texture", kLayers},
+    {"specular_weight", kLayers},
+    {"specular_tint", kLayers},
+    {"specular_weight_texture", kLayers},
+    {"specular_tint_texture", kLayers},
+    {"anisotropy", kLayers},
+    {"anisotropy_rotation", kLayers},
+    {"anisotropy_texture", kLayers},
+    {"iridescence", kLayers},
+    {"iridescence_index", kLayers},
+    {"iridescence_thickness", kLayers},
+    {"iridescence_texture", kLayers},
+    {"iridescence_thickness_texture", kLayers},
 };
 
 }  // namespace

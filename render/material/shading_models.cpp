@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <span>
 #include <string_view>
@@ -26,7 +27,13 @@ constexpr bool rows_are_in_order() {
 static_assert(rows_are_in_order());
 
 constexpr const ShadingModelRow& kBase = kShadingModels[0];
-constexpr std::span kOthers = std::span(kShadingModels).subspan(1);
+constexpr auto kAllRows = [] {
+    std::array<ShadingModelRow, std::size(kShadingModels) + 1> rows = {};
+    std::copy(std::begin(kShadingModels), std::end(kShadingModels), rows.begin());
+    rows.back() = kLayeredRow;
+    return rows;
+}();
+constexpr std::span kOthers = std::span(kAllRows).subspan(1);
 
 bool contains(ShadingModelSet models, const ShadingModelRow& row) {
     return (models >> stored_number(row.model) & 1u) != 0;
@@ -85,16 +92,16 @@ std::map<std::string_view, std::vector<ShadingModelRow>> rows_by_lobe() {
 
 ShadingModelSet lobes_of(ShadingModelSet models) {
     ShadingModelSet lobes = 0;
-    for (const ShadingModelRow& row : kShadingModels) {
+    for (const ShadingModelRow& row : kAllRows) {
         lobes |= contains(models, row) ? 1u << lobe_number(row.model) : 0u;
     }
     return lobes;
 }
 
 bool reads_material_records(ShadingModelSet models) {
-    return std::any_of(
-        std::begin(kShadingModels), std::end(kShadingModels),
-        [models](const ShadingModelRow& row) { return row.reads_record && contains(models, row); });
+    return std::any_of(kAllRows.begin(), kAllRows.end(), [models](const ShadingModelRow& row) {
+        return row.reads_record && contains(models, row);
+    });
 }
 
 void add_shading_models(Variant& variant, ShadingModelSet models) {
@@ -106,22 +113,28 @@ void add_shading_models(Variant& variant, ShadingModelSet models) {
 
 std::string model_numbers_glsl() {
     std::string text = "const uint kModelNone = 0u;\n";
-    for (const ShadingModelRow& row : kShadingModels) {
+    for (const ShadingModelRow& row : kAllRows) {
         text += fmt::format("const uint {} = {}u;\n", row.number, stored_number(row.model));
     }
     text += "uint lobe_number(uint model) {\n    uint number = model;\n";
-    for (const ShadingModelRow& row : kShadingModels) {
+    for (const ShadingModelRow& row : kAllRows) {
         if (lobe_number(row.model) != stored_number(row.model)) {
             text += fmt::format(
                 "    number = model == {} ? {}u : number;\n", row.number, lobe_number(row.model));
         }
     }
-    return text + "    return number;\n}\n";
+    text += "    return number;\n}\n";
+    return text
+           + fmt::format(
+               "#ifdef ON_WATER\n#undef SHADE_LAYERED\n#endif\n"
+               "#if defined(LAYERED_SURFACE) || (defined(SHADE_LAYERED) "
+               "&& (!defined(SHADING_LOBE) || SHADING_LOBE == {}))\n#define LAYERED\n#endif\n",
+               lobe_number(kLayeredModel));
 }
 
 std::string model_functions_glsl() {
     std::string text;
-    for (const ShadingModelRow& row : kShadingModels) {
+    for (const ShadingModelRow& row : kAllRows) {
         text += fmt::format("#include \"shade_{}.glsl\"\n", row.name);
     }
     text += fmt::format(

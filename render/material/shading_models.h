@@ -39,7 +39,12 @@ inline constexpr ShadingModelRow kShadingModels[] = {
     {ShadingModel::Hair, "hair", "kModelHair", "SHADE_HAIR", "hair", true},
 };
 inline constexpr std::size_t kMaxShadingModels = 16;  ///< four bits in the G-buffer
-static_assert(std::size(kShadingModels) < kMaxShadingModels, "0 is no surface");
+static_assert(std::size(kShadingModels) < kMaxShadingModels - 1, "0 is no surface");
+
+/// Pbr with layers (material_layers.h), which no material names: the last number.
+inline constexpr auto kLayeredModel = static_cast<ShadingModel>(kMaxShadingModels - 2);
+inline constexpr ShadingModelRow kLayeredRow = {kLayeredModel,   "layered", "kModelLayered",
+                                                "SHADE_LAYERED", "layered", true};
 
 /// The number in the G-buffer; 0 is no surface.
 [[nodiscard]] constexpr std::uint32_t stored_number(ShadingModel model) {
@@ -48,6 +53,9 @@ static_assert(std::size(kShadingModels) < kMaxShadingModels, "0 is no surface");
 
 /// The stored number of the first model with the same lobe.
 [[nodiscard]] constexpr std::uint32_t lobe_number(ShadingModel model) {
+    if (model == kLayeredModel) {
+        return stored_number(model);
+    }
     const std::string_view lobe = kShadingModels[static_cast<std::size_t>(model)].lobe;
     std::size_t first = 0;
     while (std::string_view(kShadingModels[first].lobe) != lobe) {

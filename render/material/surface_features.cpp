@@ -25,6 +25,9 @@ constexpr FeatureName kNames[] = {
     {kTransmission, "TRANSMISSION"},
     {kRefraction, "REFRACTION"},
     {kStrands, "STRANDS"},
+    {kLayered, "LAYERED_SURFACE"},
+    {kAnisotropic, "ANISOTROPIC"},
+    {kDispersion, "DISPERSION"},
 };
 
 constexpr bool has_bits_of_their_own() {

@@ -24,8 +24,11 @@ enum SurfaceFeature : std::uint32_t {
     kDeformed = 1u << 8,         // added by the instance: its vertices are its own (skinning/)
     kVelocity = 1u << 9,         // added by the view
     kTransmission = 1u << 10,
-    kRefraction = 1u << 11,  // with kTransmission: the medium has a thickness
-    kStrands = 1u << 12,     // of hair
+    kRefraction = 1u << 11,   // with kTransmission: the medium has a thickness
+    kStrands = 1u << 12,      // of hair
+    kLayered = 1u << 13,      // material_layers.h
+    kAnisotropic = 1u << 14,  // with kLayered
+    kDispersion = 1u << 15,   // with kRefraction
 };
 
 struct SurfaceFeatures {

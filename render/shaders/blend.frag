@@ -22,7 +22,7 @@ void main() {
 
     // The reflected fraction does not transmit the background.
     Reflector r = make_reflector(s, to_viewer(position_ws));
-    float mirror = dot(r.mirror, vec3(1.0 / 3.0));
+    float mirror = reflected_fraction(r);
 #ifdef TRANSMISSION
     ClearMedium medium = clear_medium(s.material);
     float clear = medium.transmission * (1.0 - s.metalness);
@@ -36,7 +36,7 @@ void main() {
 #endif
     float coverage = opacity + (1.0 - opacity) * mirror;
     vec4 fog = fog_before(position_ws);
-    vec3 own = (opacity * (light.diffuse + s.emission) + light.specular) * (1.0 - fog.a);
+    vec3 own = (opacity * (light.diffuse + visible_emission(s, position_ws)) + light.specular) * (1.0 - fog.a);
     radiance = vec4(storable(own + fog.rgb * (coverage - clear_coverage) + through), coverage);
     cut_surface(color.a);
 }

@@ -16,5 +16,5 @@ void main() {
     list = texelFetch(light_cells, int(object)).xy;
 #endif
     Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, list);
-    radiance = vec4(storable(s.emission + light.diffuse + light.specular), 1.0);
+    radiance = vec4(storable(visible_emission(s, position_ws) + light.diffuse + light.specular), 1.0);
 }

@@ -2,6 +2,7 @@
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 //   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
 //   MATERIAL_RECORDS  also the index of the material
+//   LAYER_TARGETS  with MATERIAL_RECORDS: also the layers of materials that have some
 // Techniques: deferred.gbuffer
 #version 450
 #include "lib/view.glsl"
@@ -15,16 +16,32 @@ layout(location = 1) out vec2 velocity;
 layout(location = 0) out uvec4 surface;
 #ifdef MATERIAL_RECORDS
 #ifdef VELOCITY
-layout(location = 2) out uint material;
+const int kMaterialLocation = 2;
 #else
-layout(location = 1) out uint material;
+const int kMaterialLocation = 1;
+#endif
+#ifdef LAYER_TARGETS
+layout(location = kMaterialLocation) out uvec2 material;
+#else
+layout(location = kMaterialLocation) out uint material;
+#endif
+#if defined(LAYER_TARGETS) && defined(LAYERED)
+layout(location = kMaterialLocation + 1) out uvec4 layers;
 #endif
 #endif
 
 void main() {
     vec4 color = surface_color();
-    surface = pack_surface(surface_sample(color.rgb));
-#ifdef MATERIAL_RECORDS
+    SurfaceSample s = surface_sample(color.rgb);
+    surface = pack_surface(s);
+#if defined(MATERIAL_RECORDS) && defined(LAYER_TARGETS)
+    material = uvec2(material_and_flags.x, 0u);
+#ifdef LAYERED
+    PackedLayers stored = pack_layers(s.layers, surface.x);
+    layers = stored.bits;
+    material.y = stored.more;
+#endif
+#elif defined(MATERIAL_RECORDS)
     material = material_and_flags.x;
 #endif
 #ifdef VELOCITY

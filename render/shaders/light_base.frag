@@ -10,5 +10,5 @@ void main() {
     SurfaceSample s = stored_surface(pixel);
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
     Reflected around = reflect_around(s, position_ws);
-    radiance = vec4(storable(s.emission + around.diffuse + around.specular), 1.0);
+    radiance = vec4(storable(visible_emission(s, position_ws) + around.diffuse + around.specular), 1.0);
 }

@@ -14,12 +14,13 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float depth = texelFetch(scene_depth, pixel, 0).r;
     SurfaceSample s = stored_surface(pixel);
-    Reflected light = reflect_all(
-        s, world_position(gl_FragCoord.xy, depth), gl_FragCoord.xy, cell_list(gl_FragCoord.xy, view_distance(depth)));
+    vec3 position_ws = world_position(gl_FragCoord.xy, depth);
+    Reflected light =
+        reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, view_distance(depth)));
 #ifdef SCATTERED
     bool spreads = s.model == kModelSubsurface;
     scattered = spreads ? vec4(storable(light.diffuse / max(s.albedo, vec3(1e-4))), 1.0) : vec4(0.0);
     light.diffuse = spreads ? vec3(0.0) : light.diffuse;
 #endif
-    radiance = vec4(storable(s.emission + light.diffuse + light.specular), 1.0);
+    radiance = vec4(storable(visible_emission(s, position_ws) + light.diffuse + light.specular), 1.0);
 }

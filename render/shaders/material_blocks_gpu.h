@@ -16,8 +16,9 @@ const uint kSkinBlock = 2u;        // material_skin_gpu.h
 const uint kLafortuneBlock = 3u;   // material_lafortune_gpu.h
 const uint kClearBlock = 4u;       // material_clear_gpu.h
 const uint kHairBlock = 5u;        // material_hair_gpu.h
-const uint kReliefBlock = 6u;      // relief_gpu.h
-const uint kSubsurfaceBlock = 7u;  // material_subsurface_gpu.h; the last: its end may exceed the range of offsets
+const uint kSubsurfaceBlock = 6u;  // material_subsurface_gpu.h
+const uint kLayersBlock = 7u;      // material_layers_gpu.h
+const uint kReliefBlock = 8u;      // relief_gpu.h
 
 const uint kBlockOffsetBits = 6u;
 const uint kBlocksPerFloat = 4u;

@@ -7,7 +7,7 @@ namespace limn::layout {
 #endif
 
 struct ClearBlock {
-    vec4 medium;      // transmission, refractive index, thickness [m] before scaling; w unused
+    vec4 medium;      // transmission, refractive index, thickness [m] before scaling, dispersion
     vec4 absorption;  // [1/m]; w unused
 };
 

@@ -4,6 +4,7 @@
 #ifdef __cplusplus
 #pragma once
 #include "render/shaders/lib/gpu_types.h"
+#include "render/shaders/material_maps_gpu.h"
 namespace limn::layout {
 #endif
 
@@ -12,15 +13,15 @@ struct MaterialRecord {
     vec4 emission;    // w: strength of the normal map
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
     vec4 blocks;      // x: first texel of its blocks; yzw: offset of each kind from there
-    vec4 maps;        // layers of its maps (material_maps_gpu.h)
+    vec4 maps[2];     // layers of its maps (material_maps_gpu.h)
 };
 
-const uint kMaterialTexels = 5u;
+const uint kMaterialTexels = 6u;
 
 // Bindings.
 const uint kMaterialsUnit = 12u;
 
 #ifdef __cplusplus
-static_assert(sizeof(MaterialRecord) == 16 * kMaterialTexels);
+static_assert(sizeof(MaterialRecord) == 16 * kMaterialTexels && kMapTexels == 2);
 }  // namespace limn::layout
 #endif

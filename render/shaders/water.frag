@@ -71,7 +71,7 @@ void main() {
     float normal_incidence = (water.shape.w - 1.0) / (water.shape.w + 1.0);
     r.specular_0 = vec3(normal_incidence * normal_incidence);
     r.specular_90 = vec3(1.0);
-    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    LightSum sum = no_light();
     if (above) {
         add_directional(sum, r, position, gl_FragCoord.xy);
         add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(visible.depth)), position, gl_FragCoord.xy);

@@ -95,6 +95,7 @@ TEST_CASE("shading models: every row has its file, and every file its row") {
     for (const ShadingModelRow& row : kShadingModels) {
         rows.insert(std::string("shade_") + row.name + ".glsl");
     }
+    rows.insert(std::string("shade_") + kLayeredRow.name + ".glsl");
     std::set<std::string> files;
     for (const auto& entry :
          std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/render/shaders")) {
@@ -180,6 +181,14 @@ TEST_CASE("shading models: another value of a field changes only the models that
         {"roughness_across", [](Material& m) { m.roughness_across = 0.7f; }},
         {"scale_tilt", [](Material& m) { m.scale_tilt = 0.3f; }},
         {"hair_scatter", [](Material& m) { m.hair_scatter = 0.1f; }},
+        {"clearcoat", [](Material& m) { m.clearcoat = 1; }},
+        {"sheen",
+         [](Material& m) {
+             m.sheen = {1, 1, 1};
+         }},
+        {"specular_weight", [](Material& m) { m.specular_weight = 0; }},
+        {"anisotropy", [](Material& m) { m.anisotropy = 1; }},
+        {"iridescence", [](Material& m) { m.iridescence = 1; }},
     };
     // Something that a rough surface mirrors otherwise than a smooth one.
     balls.world.insert_resource(Environment{.sky = SkyKind::Gradient});

@@ -26,6 +26,22 @@ float ggx_lobe(float n_l, float n_v, float n_h, float alpha2) {
     return n_l * alpha2 * 0.5 / max(kPi * t * t * (smith_v + smith_l), 1e-7);
 }
 
+// The same for roughness that differs along a unit vector in the surface and across it: alphas = roughness^2 of both.
+// Burley 2012; Heitz 2014.
+float anisotropic_lobe(float n_l, float n_v, vec3 to_light, vec3 to_camera, vec3 normal, vec3 along, vec2 alphas) {
+    vec3 across = cross(normal, along);
+    vec2 l = vec2(dot(to_light, along), dot(to_light, across));
+    vec2 v = vec2(dot(to_camera, along), dot(to_camera, across));
+    vec3 h = vec3(l + v, n_l + n_v);
+    h *= inversesqrt(max(dot(h, h), 1e-12));
+    float product = alphas.x * alphas.y;
+    vec3 stretched = vec3(alphas.yx * h.xy, product * h.z);
+    float w2 = product / max(dot(stretched, stretched), 1e-12);
+    float smith_v = n_l * length(vec3(alphas * v, n_v));
+    float smith_l = n_v * length(vec3(alphas * l, n_l));
+    return n_l * product * w2 * w2 * 0.5 / max(kPi * (smith_v + smith_l), 1e-7);
+}
+
 // (1 - v.h)^5 of Schlick's Fresnel term f0 + (1 - f0) (1 - v.h)^5.
 float schlick_weight(float v_h) {
     float m = clamp(1.0 - v_h, 0.0, 1.0);

@@ -18,7 +18,8 @@
 //
 // All zero: no surface here. The index of the
 // material is in a target of its own, which exists only where shading models read their material's record when lit
-// (lib/stored_surface.glsl).
+// (lib/stored_surface.glsl). So are the layers of surfaces (lib/surface_layers.glsl), where some material has them;
+// their last 32 bits stand beside the index.
 // Techniques: deferred.gbuffer
 
 #include "generated/model_numbers.glsl"
@@ -35,6 +36,34 @@
 #endif
 #if defined(SHADE_HAIR) && !defined(STRANDS)
 #define STRANDS
+#endif
+#ifdef LAYERED
+#ifdef COATED_MATERIALS
+#define LAYER_COAT
+#endif
+#ifdef SHEEN_MATERIALS
+#define LAYER_SHEEN
+#endif
+#ifdef ANISOTROPIC_MATERIALS
+#define LAYER_ANISOTROPY
+#endif
+#ifdef FILM_MATERIALS
+#define LAYER_FILM
+#endif
+#endif
+
+// Unit vector in 16 + 16 bits, never 0.
+uint pack_direction(vec3 direction) {
+    uvec2 n = uvec2(clamp(octahedral_encode(direction) * 32767.0 + 32768.5, 1.0, 65535.0));
+    return n.x | n.y << 16;
+}
+
+vec3 unpack_direction(uint bits) {
+    return octahedral_decode((vec2(bits & 0xffffu, bits >> 16) - 32768.0) / 32767.0);
+}
+
+#ifdef LAYERED
+#include "lib/surface_layers.glsl"
 #endif
 
 struct SurfaceSample {
@@ -56,11 +85,14 @@ struct SurfaceSample {
 #ifdef STRANDS
     vec3 strand_ws;  // of Hair: unit, from root to tip; 0: unknown
 #endif
+#ifdef LAYERED
+    SurfaceLayers layers;  // not in pack_surface()
+#endif
 };
 
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
 
-// Clears the members that only wrinkled skin and hair use.
+// Clears the members that only wrinkled skin, hair and layered surfaces use.
 void set_plain(inout SurfaceSample s) {
 #ifdef SMOOTH_NORMALS
     s.smooth_normal_ws = s.normal_ws;
@@ -71,6 +103,9 @@ void set_plain(inout SurfaceSample s) {
 #endif
 #ifdef STRANDS
     s.strand_ws = vec3(0.0);
+#endif
+#ifdef LAYERED
+    s.layers = plain_layers(s.normal_ws);
 #endif
 }
 
@@ -101,16 +136,6 @@ vec3 unpack_rgb9e5(uint bits) {
 
 const vec3 kAlbedoRange = vec3(2047.0, 2047.0, 4095.0);
 const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, metalness
-
-// Unit vector in 16 + 16 bits, never 0.
-uint pack_direction(vec3 direction) {
-    uvec2 n = uvec2(clamp(octahedral_encode(direction) * 32767.0 + 32768.5, 1.0, 65535.0));
-    return n.x | n.y << 16;
-}
-
-vec3 unpack_direction(uint bits) {
-    return octahedral_decode((vec2(bits & 0xffffu, bits >> 16) - 32768.0) / 32767.0);
-}
 
 #ifdef SMOOTH_NORMALS
 uint pack_smooth_normal(SurfaceSample s) {
@@ -167,6 +192,9 @@ SurfaceSample unpack_surface(uvec4 g) {
 #endif
 #ifdef STRANDS
     s.strand_ws = s.model == kModelHair && g.w != 0u ? unpack_direction(g.w) : vec3(0.0);
+#endif
+#ifdef LAYERED
+    s.layers = plain_layers(s.normal_ws);
 #endif
     return s;
 }

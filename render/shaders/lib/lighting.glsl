@@ -239,11 +239,76 @@ Reflected reflect_lights(Reflector r, LightSum sum) {
     Reflected result;
     result.diffuse = r.diffuse * (sum.diffuse / kPi);
     result.specular = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
+#ifdef LAYER_SHEEN
+    result.specular += r.sheen * sum.sheen;
+#endif
+#ifdef LAYER_COAT
+    result.diffuse *= 1.0 - r.coat;
+    result.specular = mix(result.specular, sum.coat, r.coat);
+#endif
     return result;
 }
 
+// Emission that passes the clear coat.
+vec3 visible_emission(SurfaceSample s, vec3 position_ws) {
+#ifdef LAYER_COAT
+    return s.emission * (1.0 - make_reflector(s, to_viewer(position_ws)).coat);
+#else
+    return s.emission;
+#endif
+}
+
+// The fraction of uniform light that does not enter the surface.
+float reflected_fraction(Reflector r) {
+    float fraction = dot(r.mirror, vec3(1.0 / 3.0));
+#ifdef LAYER_SHEEN
+    fraction = mix(fraction, 1.0, largest(r.sheen) * min(r.sheen_albedo, 1.0));
+#endif
+#ifdef LAYER_COAT
+    fraction = mix(fraction, 1.0, r.coat);
+#endif
+    return fraction;
+}
+
+// The normal by which the environment is mirrored. Anisotropic highlights stretch: bent toward the plane of the viewer
+// and the direction across, as in the sample renderer of glTF.
+vec3 mirror_normal(Reflector r, float roughness) {
+#ifdef LAYER_ANISOTROPY
+    vec3 across = cross(r.normal, r.along);
+    vec3 bent = cross(cross(across, r.to_camera), across);
+    float bend = 1.0 - r.stretch * (1.0 - roughness);
+    vec3 n = mix(bent * inversesqrt(max(dot(bent, bent), 1e-12)), r.normal, bend * bend * bend * bend);
+    return r.stretch > 0.0 ? n * inversesqrt(max(dot(n, n), 1e-12)) : r.normal;
+#else
+    return r.normal;
+#endif
+}
+
+#if defined(LAYER_SHEEN) || defined(LAYER_COAT)
+// Adds the layers over a base that is lit by the environment, whose light is multiplied by `passed`.
+void add_layers_around(inout Reflected base, Reflector r, SurfaceSample s, vec3 position_ws, vec3 passed) {
+#ifdef LAYER_SHEEN
+    vec3 direction = reflect(-r.to_camera, r.normal);
+    vec3 fibers = environment_light(position_ws, r.normal, direction, r.sheen_roughness).mirrored * passed;
+    float albedo = min(r.sheen_albedo, 1.0);
+    float below = 1.0 - largest(r.sheen) * albedo;
+    base.diffuse *= below;
+    base.specular = base.specular * below
+                    + r.sheen * (albedo * specular_occlusion(r.n_v, s.occlusion, r.sheen_roughness)) * fibers;
+#endif
+#ifdef LAYER_COAT
+    vec3 mirrored = reflect(-r.to_camera, r.coat_normal);
+    vec3 coat = environment_light(position_ws, r.coat_normal, mirrored, r.coat_roughness).mirrored * passed;
+    coat *= specular_occlusion(r.coat_n_v, s.occlusion, r.coat_roughness);
+    base.diffuse *= 1.0 - r.coat;
+    base.specular = mix(base.specular, coat, r.coat);
+#endif
+}
+#endif
+
 Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
-    EnvironmentLight around = environment_light(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+    vec3 mirrored = reflect(-r.to_camera, mirror_normal(r, s.roughness));
+    EnvironmentLight around = environment_light(position_ws, r.normal, mirrored, s.roughness);
 #ifdef UNDER_WATER
     vec3 left = underwater_environment(position_ws);
     around.irradiance *= left;
@@ -257,6 +322,12 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
 #endif
     result.diffuse = r.diffuse * (around.irradiance * s.occlusion);
     result.specular = r.mirror * around.mirrored * open;
+#if defined(LAYER_SHEEN) || defined(LAYER_COAT)
+#ifndef UNDER_WATER
+    const vec3 left = vec3(1.0);
+#endif
+    add_layers_around(result, r, s, position_ws, left);
+#endif
 #ifdef OVER_WATER
     result.diffuse += r.diffuse * (mirrored_irradiance(position_ws, r.normal) / kPi);
 #endif
@@ -284,7 +355,7 @@ Reflected blend_skin(SurfaceSample s, Reflected wrinkled, Reflected smooth_light
 // Light of lights and the environment, by the normal of `s` only.
 Reflected reflect_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
-    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    LightSum sum = no_light();
     add_directional(sum, r, position_ws, pixel);
     add_listed(sum, r, list, position_ws, pixel);
     return add_reflected(reflect_lights(r, sum), reflect_surroundings(r, s, position_ws));

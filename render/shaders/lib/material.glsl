@@ -1,6 +1,8 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP RELIEF_MAP  each is the texture unit of the map
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP RELIEF_MAP
+//   CLEARCOAT_MAP CLEARCOAT_ROUGHNESS_MAP CLEARCOAT_NORMAL_MAP SHEEN_MAP SHEEN_ROUGHNESS_MAP SPECULAR_WEIGHT_MAP
+//   SPECULAR_TINT_MAP ANISOTROPY_MAP IRIDESCENCE_MAP IRIDESCENCE_THICKNESS_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
@@ -12,10 +14,11 @@
 //   OFF_MESH       hooks find the visible point off the mesh, or a hole
 //   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
 //   STRANDS        of hair, which lies along v
+//   LAYERED_SURFACE  with layers (lib/surface_layers.glsl); ANISOTROPIC: one of them stretches highlights
 //   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
 // Additions of single effects are called by hook_*() (render/material/surface_hooks.h).
 // Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
-//     light.phong-pixel, shade.derivatives, skin.detail
+//     light.phong-pixel, shade.anisotropy-map, shade.derivatives, skin.detail
 // Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
@@ -72,7 +75,9 @@ vec2 map_gradient(uint slot, vec4 difference) {
 
 // Texture coordinates and layer of a map.
 vec3 map_texcoord(uint slot) {
-    return vec3(map_coordinates(slot, map_uv), map_layer(map_layers, slot));
+    float layer = map_layer(
+        slot < kLayersPerTexel ? map_layers : material_texel(5), slot < kLayersPerTexel ? slot : slot - kLayersPerTexel);
+    return vec3(map_coordinates(slot, map_uv), layer);
 }
 
 #ifdef SHIFTED_UV
@@ -167,6 +172,70 @@ vec3 strand_direction(vec3 normal) {
 }
 #endif
 
+#ifdef LAYERED_SURFACE
+// From tangent space to world space, facing the viewer.
+vec3 from_tangent_space(vec3 v) {
+    vec3 n = v.x * tangent_ws.xyz + v.y * tangent_ws.w * cross(normal_ws, tangent_ws.xyz) + v.z * normal_ws;
+    n *= inversesqrt(max(dot(n, n), 1e-20));
+#ifdef DOUBLE_SIDED
+    n = gl_FrontFacing == ((material_and_flags.y & 1u) != 0u) ? -n : n;
+#endif
+    return n;
+}
+
+// `normal`: unit, of the surface.
+SurfaceLayers surface_layers(vec3 normal) {
+    SurfaceLayers layers = plain_layers(normal);
+    layers.coat_normal_ws = from_tangent_space(vec3(0.0, 0.0, 1.0));
+#ifdef CLEARCOAT_NORMAL_MAP
+    layers.coat_normal_ws = from_tangent_space(
+        MAP_TEXEL(CLEARCOAT_NORMAL_MAP, kClearcoatNormalSlot).xyz * 2.0 - 1.0);
+#endif
+#ifdef CLEARCOAT_MAP
+    layers.coat = MAP_TEXEL(CLEARCOAT_MAP, kClearcoatSlot).r;
+#endif
+#ifdef CLEARCOAT_ROUGHNESS_MAP
+    layers.coat_roughness =
+        MAP_TEXEL(CLEARCOAT_ROUGHNESS_MAP, kClearcoatRoughnessSlot).g;
+#endif
+#ifdef SHEEN_MAP
+    layers.sheen = MAP_TEXEL(SHEEN_MAP, kSheenSlot).rgb;
+#endif
+#ifdef SHEEN_ROUGHNESS_MAP
+    layers.sheen_roughness = MAP_TEXEL(SHEEN_ROUGHNESS_MAP, kSheenRoughnessSlot).a;
+#endif
+#ifdef SPECULAR_WEIGHT_MAP
+    layers.weight = MAP_TEXEL(SPECULAR_WEIGHT_MAP, kSpecularWeightSlot).a;
+#endif
+#ifdef SPECULAR_TINT_MAP
+    layers.tint = MAP_TEXEL(SPECULAR_TINT_MAP, kSpecularTintSlot).rgb;
+#endif
+#ifdef IRIDESCENCE_MAP
+    layers.iridescence = MAP_TEXEL(IRIDESCENCE_MAP, kIridescenceSlot).r;
+#endif
+#ifdef IRIDESCENCE_THICKNESS_MAP
+    layers.film =
+        MAP_TEXEL(IRIDESCENCE_THICKNESS_MAP, kIridescenceThicknessSlot).g;
+#endif
+#ifdef ANISOTROPIC
+    vec2 direction = vec2(1.0, 0.0);
+#ifdef ANISOTROPY_MAP
+    vec3 texel = MAP_TEXEL(ANISOTROPY_MAP, kAnisotropySlot).rgb;
+    direction = texel.rg * 2.0 - 1.0;
+    layers.anisotropy = texel.b;
+#endif
+    float rotation = block_texel(material_and_flags.x, kLayersBlock, 3).w;
+    vec2 turn = vec2(cos(rotation), sin(rotation));
+    direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
+    vec3 along = direction.x * tangent_ws.xyz + direction.y * tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
+    along -= normal * dot(normal, along);
+    float length2 = dot(along, along);
+    layers.along_ws = length2 > 1e-8 ? along * inversesqrt(length2) : layers.along_ws;
+#endif
+    return layers;
+}
+#endif
+
 // Widens the specular lobe by the variation of a normal map within a pixel, which prevents sparkling. Not for the
 // curvature of meshes, since roughness blurs their reflections too. Tokuyoshi and Kaplanyan, "Improved Geometric
 // Specular Antialiasing", 2019.
@@ -209,6 +278,9 @@ SurfaceSample surface_sample(vec3 albedo) {
     set_plain(s);
 #ifdef STRANDS
     s.strand_ws = strand_direction(s.normal_ws);
+#endif
+#ifdef LAYERED_SURFACE
+    s.layers = surface_layers(s.normal_ws);
 #endif
     hook_sample(s, smooth_normal);
     split_unlit(s);

@@ -25,18 +25,18 @@ vec4 block_texel(uint material, uint kind, int i) {
     return texelFetch(materials, block_begin(material, kind) + i);
 }
 
-// The layers of all maps of a material.
+// The layers of the first maps of a material.
 vec4 map_layers_of(uint material) {
     return material_texel(material, 4);
 }
 
-// Layer of one of the maps in its texture array.
+// Layer of one of the first maps in its texture array.
 float map_layer(vec4 layers, uint slot) {
     uint bits = uint(layers[slot / kLayersPerFloat]);
     return float(bitfieldExtract(bits, int(slot % kLayersPerFloat * kLayerBits), int(kLayerBits)));
 }
 
 // All stages of a program must declare the same varyings.
-#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP) || defined(RELIEF_MAP)
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP) || defined(RELIEF_MAP) || defined(CLEARCOAT_MAP) || defined(CLEARCOAT_ROUGHNESS_MAP) || defined(CLEARCOAT_NORMAL_MAP) || defined(SHEEN_MAP) || defined(SHEEN_ROUGHNESS_MAP) || defined(SPECULAR_WEIGHT_MAP) || defined(SPECULAR_TINT_MAP) || defined(ANISOTROPY_MAP) || defined(IRIDESCENCE_MAP) || defined(IRIDESCENCE_THICKNESS_MAP)
 #define MAP_LAYERS
 #endif

@@ -12,7 +12,7 @@ Reflected reflect_one_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel) {
     Incoming light = incoming_local(light_index, position_ws, r.normal, water_medium(position_ws));
     light.irradiance *= light_transmittance(light_index, position_ws, body_normal(r), light.to_light, pixel);
 #endif
-    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    LightSum sum = no_light();
     add_shadowed(sum, r, light_index, light, position_ws);
     return reflect_lights(r, sum);
 }

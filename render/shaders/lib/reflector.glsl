@@ -40,6 +40,23 @@ struct Reflector {
 #ifdef SHADE_HAIR
     HairLobes hair;
 #endif
+#ifdef LAYER_ANISOTROPY
+    vec3 along;        // unit, in the surface
+    vec2 alphas;       // along it and across
+    float stretch;     // anisotropy
+#endif
+#ifdef LAYER_SHEEN
+    vec3 sheen;
+    float sheen_roughness;
+    float sheen_albedo;  // of white sheen, toward the camera; may exceed 1
+#endif
+#ifdef LAYER_COAT
+    vec3 coat_normal;
+    float coat_n_v;
+    float coat_roughness;
+    float coat_alpha2;
+    float coat;        // reflectance of the clear coat, 0 without one
+#endif
 #ifdef SMOOTH_NORMALS
     vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
 #endif
@@ -88,6 +105,23 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 #ifdef FOLD_LIGHT
     r.open = s.bounces ? clamp(dot(s.normal_ws, s.smooth_normal_ws), kMinOpen, 1.0) : 1.0;
 #endif
+#ifdef LAYER_ANISOTROPY
+    r.along = vec3(0.0);
+    r.alphas = vec2(1.0);
+    r.stretch = 0.0;
+#endif
+#ifdef LAYER_SHEEN
+    r.sheen = vec3(0.0);
+    r.sheen_roughness = 1.0;
+    r.sheen_albedo = 0.0;
+#endif
+#ifdef LAYER_COAT
+    r.coat_normal = s.normal_ws;
+    r.coat_n_v = 1.0;
+    r.coat_roughness = 1.0;
+    r.coat_alpha2 = 1.0;
+    r.coat = 0.0;
+#endif
     prepare_model(r, s);
     return r;
 }
@@ -106,7 +140,27 @@ struct LightSum {
     vec3 diffuse;
     vec3 specular;
     vec3 fresnel;
+#ifdef LAYER_SHEEN
+    vec3 sheen;
+#endif
+#ifdef LAYER_COAT
+    vec3 coat;
+#endif
 };
+
+LightSum no_light() {
+    LightSum sum;
+    sum.diffuse = vec3(0.0);
+    sum.specular = vec3(0.0);
+    sum.fresnel = vec3(0.0);
+#ifdef LAYER_SHEEN
+    sum.sheen = vec3(0.0);
+#endif
+#ifdef LAYER_COAT
+    sum.coat = vec3(0.0);
+#endif
+    return sum;
+}
 
 #ifdef SMOOTH_NORMALS
 // Fade of light on wrinkled skin by the cosine at the skin without wrinkles: its back is unlit, and highlights of
@@ -136,6 +190,16 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
     sum.diffuse += light.irradiance * response.diffuse;
     sum.specular += light.irradiance * response.specular;
     sum.fresnel += light.irradiance * response.fresnel;
+#ifdef LAYER_SHEEN
+    float fibers = sheen_lobe(n_l, r.n_v, h.x, r.sheen_roughness * r.sheen_roughness);
+    fibers *= sheen_dimming(r.sheen_albedo, sheen_reflectance(n_l, r.sheen_roughness));
+    sum.sheen += light.irradiance * fibers;
+#endif
+#ifdef LAYER_COAT
+    float coat_n_l = max(dot(r.coat_normal, light.to_light), 0.0);
+    vec2 coat_h = half_cosines(coat_n_l, r.coat_n_v, l_v);
+    sum.coat += light.irradiance * ggx_lobe(coat_n_l, r.coat_n_v, coat_h.x, r.coat_alpha2);
+#endif
 }
 
 struct Reflected {

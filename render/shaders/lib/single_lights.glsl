@@ -56,9 +56,9 @@ Incoming single_light(LitPoint p, int k) {
 // Light of the environment and of the lights below `end`: diffuse from number `diffuse_from` on, specular from number
 // `specular_from` on. Diffuse: still to be multiplied by the base color map; with the emission of unlit surfaces.
 Reflected light_from(LitPoint p, int diffuse_from, int specular_from, int end) {
-    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    LightSum sum = no_light();
     for (int k = min(diffuse_from, specular_from); k < min(p.lights, end); ++k) {
-        LightSum one = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+        LightSum one = no_light();
         add_light(one, p.reflector, single_light(p, k));
         sum.diffuse += k < diffuse_from ? vec3(0.0) : one.diffuse;
         sum.specular += k < specular_from ? vec3(0.0) : one.specular;

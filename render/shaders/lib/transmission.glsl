@@ -25,7 +25,7 @@ ClearMedium clear_medium(uint material) {
     vec3 absorption = block_texel(material, kClearBlock, 1).rgb;
     float thickness = medium.z * scale;
 #ifdef THICKNESS_MAP
-    thickness *= texture(material_maps[THICKNESS_MAP], map_texcoord(kThicknessSlot)).g;
+    thickness *= MAP_TEXEL(THICKNESS_MAP, kThicknessSlot).g;
 #endif
     return ClearMedium(medium.x, medium.y, thickness, absorption);
 }
