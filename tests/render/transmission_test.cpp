@@ -1,6 +1,7 @@
 #include "ecs/base/optics.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
 
 namespace limn::test::transmission_test {
 namespace {
@@ -208,6 +209,42 @@ TEST_CASE_FIXTURE(
     CHECK(thick.x == near(0.25).epsilon(0.01));
     CHECK(thick.y == near(0.64).epsilon(0.01));
     CHECK(thin.x == near(1).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
+    GlassScene,
+    "transmission: with dispersion each color is bent as by glass of its own refractive index"
+        * technique("shade.dispersion")) {
+    add_edge(-0.6f, -0.4f);
+    const RenderView view = look({1.2f, 0, 0.9f}, {0, 0, 0}, 128, 128);
+    constexpr float kScale = 40;
+    Material slab = glass(0.5f / kScale);
+    const auto seen = [&] {
+        const Entity pane = add_pane(slab, kScale);
+        const gpu::FloatImage image = radiance(view);
+        world.destroy(pane);
+        return image;
+    };
+    const gpu::FloatImage plain = seen();
+    slab.dispersion = 4;
+    const gpu::FloatImage spread = seen();
+    const float half_spread = 0.5f * 0.025f * slab.dispersion;
+    slab.dispersion = 0;
+    CHECK(seen().pixels == plain.pixels);
+    float red_from_blue = 0;
+    for (const int channel : {0, 2}) {
+        slab.refractive_index = 1.5f + (channel == 0 ? -half_spread : half_spread);
+        const gpu::FloatImage bent = seen();
+        for (int y = 0; y < 128; ++y) {
+            for (int x = 0; x < 128; ++x) {
+                // The reflectance of the front is that of the index 1.5 for all colors.
+                CHECK(std::abs(spread.at(x, y, channel) - bent.at(x, y, channel)) < 0.02f);
+                red_from_blue =
+                    std::max(red_from_blue, std::abs(spread.at(x, y, 0) - spread.at(x, y, 2)));
+            }
+        }
+    }
+    CHECK(red_from_blue > 0.5f);
 }
 
 TEST_CASE_FIXTURE(

@@ -2,7 +2,10 @@
 // roughness, and tinted by absorption (M. McGuire and M. Mara, "Phenomenological Transparency", 2017; thickness as in
 // KHR_materials_volume). Surfaces within the medium, such as an iris beneath its cornea, appear where the refracted ray
 // hits them. Off screen the environment is used. Definition REFRACTION: the medium has a thickness. Include after
-// lib/lighting.glsl and lib/material.glsl.
+// lib/lighting.glsl and lib/material.glsl. DISPERSION: its refractive index differs for red, green and blue
+// (KHR_materials_dispersion).
+// Techniques: shade.dispersion
+// Source of shade.dispersion: KHR_materials_dispersion
 
 #include "lib/optics.glsl"
 #include "material_clear_gpu.h"
@@ -19,6 +22,7 @@ struct ClearMedium {
     float index;      // of refraction
     float thickness;  // [m]
     vec3 absorption;  // [1/m]
+    float dispersion; // 20 / Abbe number
 };
 ClearMedium clear_medium(uint material) {
     vec4 medium = block_texel(material, kClearBlock, 0);
@@ -27,7 +31,7 @@ ClearMedium clear_medium(uint material) {
 #ifdef THICKNESS_MAP
     thickness *= MAP_TEXEL(THICKNESS_MAP, kThicknessSlot).g;
 #endif
-    return ClearMedium(medium.x, medium.y, thickness, absorption);
+    return ClearMedium(medium.x, medium.y, thickness, absorption, medium.w);
 }
 
 // The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples hide the texels of a mip level.
@@ -69,19 +73,20 @@ float distance_inside(vec3 position, vec3 inside, float here, float thickness) {
 }
 #endif
 
-// Radiance through the medium, before the Fresnel reflection at its front. `normal` faces the viewer.
-vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 to_camera, float roughness) {
+// Radiance through a medium of this refractive index, before absorption.
+vec3 refracted_radiance(
+    float index, float thickness, vec3 position, vec3 normal, vec3 to_camera, float roughness) {
     vec2 here_uv = gl_FragCoord.xy * view.size.zw;
     float here = view_distance(gl_FragCoord.z);
 #ifdef REFRACTION
-    vec3 inside = refract_ray(normal, to_camera, 1.0 / medium.index);
-    float path = distance_inside(position, inside, here, medium.thickness);
+    vec3 inside = refract_ray(normal, to_camera, 1.0 / index);
+    float path = distance_inside(position, inside, here, thickness);
     vec3 clip = clip_of(position + path * inside);
     vec2 uv = clip.xy / max(clip.z, 1e-6) * 0.5 + 0.5;
     float depth = textureLod(behind_depth, uv, 0.0).r;
     bool in_front = depth > 0.0 && view_distance(depth) < here;  // surfaces in front of the medium are not behind it
     uv = in_front ? here_uv : uv;
-    float turn = medium.index - 1.0;  // deflection of a refracted ray per unit of slope
+    float turn = index - 1.0;  // deflection of a refracted ray per unit of slope
 #else
     vec2 uv = here_uv;
     const float turn = 0.5;  // like glass
@@ -97,6 +102,22 @@ vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 t
     if (shown < 1.0) {
         transmitted = mix(environment_light(position, normal, inside, roughness).mirrored, transmitted, shown);
     }
+#endif
+    return transmitted;
+}
+
+// Radiance through the medium, before the Fresnel reflection at its front. `normal` faces the viewer.
+vec3 transmitted_radiance(ClearMedium medium, vec3 position, vec3 normal, vec3 to_camera, float roughness) {
+#ifdef DISPERSION
+    float spread = (medium.index - 1.0) * 0.025 * medium.dispersion;
+    vec3 transmitted;
+    for (int c = 0; c < 3; ++c) {
+        float index = max(medium.index + spread * (float(c) - 1.0), 1.0);
+        transmitted[c] = refracted_radiance(index, medium.thickness, position, normal, to_camera, roughness)[c];
+    }
+#else
+    vec3 transmitted =
+        refracted_radiance(medium.index, medium.thickness, position, normal, to_camera, roughness);
 #endif
     return transmitted * exp(-medium.absorption * medium.thickness);
 }
