@@ -57,8 +57,8 @@ TEST_CASE("gltf: each extension that is ignored is named once") {
     check_square(
         load_edited(
             R"("scene": 0)",
-            R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_sheen", "KHR_lights_punctual"])"),
-        "square.glb: the extension \"KHR_materials_sheen\" is ignored");
+            R"("extensionsUsed": ["KHR_materials_new", "KHR_materials_new", "KHR_lights_punctual"])"),
+        "square.glb: the extension \"KHR_materials_new\" is ignored");
     // Also one that the file has, but does not list; not what an application put into extras.
     check_square(
         load_edited(R"("scene": 0)", R"("scene": 0, "extensions": {"EXT_other": {}},

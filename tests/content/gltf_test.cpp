@@ -300,7 +300,7 @@ TEST_CASE("gltf: materials have the defaults of the specification and what the e
     CHECK(bare.materials[1].metalness == 1);
 }
 
-TEST_CASE("gltf: clear media have their index, thickness and absorption; opaque ones do not") {
+TEST_CASE("gltf: clear media have their index, thickness and absorption; opaque ones the index") {
     const auto glass = [](const std::string& extensions) {
         return load_square({{R"({"name": "paint"})", R"({"extensions": {)" + extensions + "}}"}})
             .materials[0];
@@ -320,7 +320,7 @@ TEST_CASE("gltf: clear media have their index, thickness and absorption; opaque 
     CHECK(gem.attenuation_distance == 2);
     CHECK(glass(clear + R"(, "KHR_materials_ior": {"ior": 0})").refractive_index == 1);
     CHECK(glass(R"("KHR_materials_transmission": {})").transmission == 0);
-    CHECK(glass(R"("KHR_materials_ior": {"ior": 2.4})").refractive_index == 1.5f);
+    CHECK(glass(R"("KHR_materials_ior": {"ior": 2.4})").refractive_index == 2.4f);
     CHECK(
         glass(R"("KHR_materials_transmission":
                 {"transmissionFactor": 1, "transmissionTexture": {"index": 0}})")

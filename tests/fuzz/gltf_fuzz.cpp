@@ -1,6 +1,7 @@
 // Bytes into the glTF loader, without a file system: whatever they are, there is a scene or one
 // line.
 
+#include "content/load/gltf/gltf_layers.h"
 #include "content/load/gltf/gltf_load.h"
 #include "ecs/components/all.h"
 
@@ -129,11 +130,9 @@ void check_scene(const limn::GltfScene& scene) {
     }
     check_characters(scene);
     for (const limn::Material& material : scene.materials) {
-        for (const limn::TextureSlot* slot :
-             {&material.base_color_texture, &material.metal_rough_texture, &material.normal_texture,
-              &material.occlusion_texture, &material.emission_texture,
-              &material.thickness_texture}) {
-            require(slot->image.index == limn::kNoAsset || slot->image.index < scene.images.size());
+        for (limn::TextureSlot limn::Material::*const slot : limn::kGltfSlots) {
+            const std::uint32_t index = (material.*slot).image.index;
+            require(index == limn::kNoAsset || index < scene.images.size());
         }
     }
     (void)limn::find_bounds(scene);

@@ -1,5 +1,6 @@
 #include "content/load/gltf/gltf_glossiness.h"
 
+#include "content/load/gltf/gltf_layers.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
@@ -17,10 +18,6 @@ namespace limn {
 namespace {
 
 constexpr float kDielectric = 0.04f;  // reflectance at normal incidence
-
-constexpr TextureSlot Material::*kGltfSlots[] = {
-    &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
-    &Material::occlusion_texture,  &Material::emission_texture,    &Material::thickness_texture};
 
 float perceived_brightness(const Vec3& color) {
     return std::sqrt(glm::dot(Vec3(0.299f, 0.587f, 0.114f), color * color));

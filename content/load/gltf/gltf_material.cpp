@@ -2,6 +2,7 @@
 #include "content/load/files/image_load.h"
 #include "content/load/gltf/gltf_document.h"
 #include "content/load/gltf/gltf_glossiness.h"
+#include "content/load/gltf/gltf_layers.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
 
@@ -22,13 +23,9 @@ struct UsedImage {
     bool srgb = false;
 };
 
-constexpr float kIndex = 1.5f;  ///< of refraction, by default; of every opaque material
+constexpr float kIndex = 1.5f;  ///< of refraction, by default
 constexpr float kMaxIndex = 3;
 constexpr float kMaxThickness = 1000;  // [m]
-
-constexpr TextureSlot Material::*kImageSlots[] = {
-    &Material::base_color_texture, &Material::metal_rough_texture, &Material::normal_texture,
-    &Material::occlusion_texture,  &Material::emission_texture,    &Material::thickness_texture};
 
 Wrap to_wrap(std::int32_t mode) {
     switch (mode) {
@@ -107,6 +104,9 @@ class MaterialBuilder {
         material.normal_texture = slot(source.normalTexture, false);
         material.occlusion_texture = slot(source.occlusionTexture, false);
         material.emission_texture = slot(source.emissiveTexture, true);
+        if (material.shading == ShadingModel::Pbr && !glossiness.IsObject()) {
+            add_layers(source.extensions, material);
+        }
         transmit(source.extensions, material);
         return material;
     }
@@ -134,15 +134,34 @@ class MaterialBuilder {
              number_of(source, "glossinessFactor", 1)});
     }
 
+    void add_layers(const tinygltf::ExtensionMap& extensions, Material& material) {
+        read_layer_factors(extensions, material);
+        for (const LayerTexture& texture : kLayerTextures) {
+            const tinygltf::Value& extension = extension_of(extensions, texture.extension);
+            material.*texture.slot = slot(texture_of(extension, texture.member), texture.srgb);
+        }
+        const tinygltf::Value& normals = member_of(
+            extension_of(extensions, "KHR_materials_clearcoat"), "clearcoatNormalTexture");
+        if (const float scale = number_of(normals, "scale", 1); scale != 1) {
+            warn(fmt::format("clearcoatNormalTexture.scale {:.3g} is drawn as 1", scale));
+        }
+    }
+
+    /// An opaque material. The index 0 stands for a reflectance of 1 at normal incidence.
+    static void reflect_by_index(float index, Material& material) {
+        if (material.shading == ShadingModel::Pbr) {
+            material.refractive_index = index == 0 ? kMaxIndex : std::clamp(index, 1.0f, kMaxIndex);
+            material.specular_tint *= index == 0 ? square((kMaxIndex + 1) / (kMaxIndex - 1)) : 1.0f;
+        }
+    }
+
     void transmit(const tinygltf::ExtensionMap& extensions, Material& material) {
         const tinygltf::Value& transmission =
             extension_of(extensions, "KHR_materials_transmission");
         const float factor = number_of(transmission, "transmissionFactor", 0);
         const float index = number_of(extension_of(extensions, "KHR_materials_ior"), "ior", kIndex);
         if (factor <= 0 || material.alpha_mode == AlphaMode::Mask) {
-            if (std::abs(index - kIndex) > 0.01f) {
-                warn(fmt::format("ior {:.3g} of an opaque material is drawn as {}", index, kIndex));
-            }
+            reflect_by_index(index, material);
             return;
         }
         if (transmission.Has("transmissionTexture")) {
@@ -284,7 +303,7 @@ void load_images(GltfDocument& document, const std::vector<UsedImage>& used, Glt
         }
     }
     for (Material& material : scene.materials) {
-        for (TextureSlot Material::*const slot : kImageSlots) {
+        for (TextureSlot Material::*const slot : kGltfSlots) {
             TextureSlot& texture = material.*slot;
             if (texture.image.index != kNoAsset) {
                 texture.image.index = numbers[texture.image.index];

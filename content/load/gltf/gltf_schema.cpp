@@ -59,6 +59,20 @@ materials[].extensions.KHR_materials_volume: thicknessFactor factor 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationDistance factor 0 1e9
 materials[].extensions.KHR_materials_volume: attenuationColor factor3 0 1
 materials[].extensions.KHR_materials_emissive_strength: emissiveStrength factor 0 1e9
+materials[].extensions.KHR_materials_clearcoat: clearcoatFactor factor 0 1
+materials[].extensions.KHR_materials_clearcoat: clearcoatRoughnessFactor factor 0 1
+materials[].extensions.KHR_materials_clearcoat.clearcoatNormalTexture: scale number
+materials[].extensions.KHR_materials_sheen: sheenColorFactor factor3 0 1
+materials[].extensions.KHR_materials_sheen: sheenRoughnessFactor factor 0 1
+materials[].extensions.KHR_materials_specular: specularFactor factor 0 1
+materials[].extensions.KHR_materials_specular: specularColorFactor factor3 0 1e9
+materials[].extensions.KHR_materials_anisotropy: anisotropyStrength factor 0 1
+materials[].extensions.KHR_materials_anisotropy: anisotropyRotation number
+materials[].extensions.KHR_materials_iridescence: iridescenceFactor factor 0 1
+materials[].extensions.KHR_materials_iridescence: iridescenceIor factor 1 5
+materials[].extensions.KHR_materials_iridescence: iridescenceThicknessMinimum factor 0 1e4
+materials[].extensions.KHR_materials_iridescence: iridescenceThicknessMaximum factor 0 1e4
+materials[].extensions.KHR_materials_dispersion: dispersion factor 0 20
 materials[].pbrMetallicRoughness: baseColorFactor factor4 0 1; metallicFactor factor 0 1
 materials[].pbrMetallicRoughness: roughnessFactor factor 0 1
 materials[].normalTexture: scale number
@@ -103,6 +117,16 @@ constexpr std::string_view kTextureInfos[] = {
     "materials[].extensions.KHR_materials_volume.thicknessTexture",
     "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
     "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",
+    "materials[].extensions.KHR_materials_clearcoat.clearcoatTexture",
+    "materials[].extensions.KHR_materials_clearcoat.clearcoatRoughnessTexture",
+    "materials[].extensions.KHR_materials_clearcoat.clearcoatNormalTexture",
+    "materials[].extensions.KHR_materials_sheen.sheenColorTexture",
+    "materials[].extensions.KHR_materials_sheen.sheenRoughnessTexture",
+    "materials[].extensions.KHR_materials_specular.specularTexture",
+    "materials[].extensions.KHR_materials_specular.specularColorTexture",
+    "materials[].extensions.KHR_materials_anisotropy.anisotropyTexture",
+    "materials[].extensions.KHR_materials_iridescence.iridescenceTexture",
+    "materials[].extensions.KHR_materials_iridescence.iridescenceThicknessTexture",
 };
 constexpr std::string_view kTextureSchema =
     R"(: index! index textures; texCoord size 0 255

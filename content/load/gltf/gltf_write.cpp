@@ -2,6 +2,7 @@
 
 #include "content/load/files/atomic_file.h"
 #include "content/load/gltf/gltf_file.h"
+#include "content/load/gltf/gltf_layers.h"
 #include "content/load/gltf/gltf_write_textures.h"
 #include "ecs/base/text.h"
 
@@ -468,6 +469,11 @@ class GlbWriter {
         }
         if (source.shading == ShadingModel::Unlit) {
             use(material, "KHR_materials_unlit", {});
+        } else {
+            for (const auto& [name, values] : write_layer_factors(source)) {
+                material.extensions.emplace(name, values);
+                extensions_.insert(name);
+            }
         }
         material.doubleSided = source.double_sided;
         material.alphaMode = source.alpha_mode == AlphaMode::Mask    ? "MASK"
