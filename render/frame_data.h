@@ -91,6 +91,7 @@ struct FrameData {
     std::span<const std::string> aovs;  ///< requested
     bool velocity = false;              ///< the main view needs motion vectors; set in collect()
     bool attributes = false;            ///< the main view needs its G-buffer; set in collect()
+    bool material_ids = false;          ///< and the material of each pixel; set in collect()
     bool warm_up = false;               ///< drawn to compile programs, not for display (warm_up())
     bool all_lights = false;            ///< of a warm-up: every light counts as on
     std::vector<ExtraView> views;       ///< filled in request_views()
@@ -133,6 +134,7 @@ struct ViewData {
     int index = 0;          ///< ExtraView::index
     bool velocity = false;  ///< motion vectors are drawn
     bool attributes = false;
+    bool material_ids = false;
     bool spreads = false;  ///< subsurface light is drawn to `scattered`; set in prepare()
     gpu::RingSlice block;  ///< layout::ViewBlock
     /// Blocks of effects, indexed by binding - kEffectBlocks.

@@ -19,7 +19,9 @@
 #include "render/lens/vignette_pass.h"
 #include "render/light/caustics_pass.h"
 #include "render/light/cluster_pass.h"
+#include "render/light/hatching_pass.h"
 #include "render/light/highlight_map_pass.h"
+#include "render/light/ink_lines_pass.h"
 #include "render/light/light_pass.h"
 #include "render/light/mirror_caustic_pass.h"
 #include "render/light/shading_comparison_pass.h"
@@ -64,6 +66,8 @@ constexpr EffectEntry kImage[] = {
     effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
     effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // subsurface scattering
     effect<SkyEffect>(kSceneViews), effect<MirrorCausticEffect>(kSceneViews),
+    effect<HatchingEffect>(kMainViews),  // of everything opaque; before what lies over it
+    effect<InkLinesEffect>(kMainViews),  // over the strokes
     effect<ParticlesUnderWaterEffect>(kSceneViews),  // visible through the water
     effect<WaterEffect>(kSceneViews),                // over everything opaque
     effect<WaterVeilEffect>(kSceneViews),            // the water in front of an underwater camera

@@ -286,6 +286,7 @@ void Renderer::begin(ViewKind kind, const World& world, const RenderView& camera
     frame_.time = shown_time(world, camera);
     frame_.velocity = false;
     frame_.attributes = false;
+    frame_.material_ids = false;
     frame_.views.clear();
     update_assets();
     if ((kind & kFilmViews) != 0) {
@@ -357,6 +358,7 @@ void Renderer::prepare_views() {
         view.index = main ? 0 : frame_.views[i].index;
         view.velocity = main && frame_.velocity;
         view.attributes = main && frame_.attributes;
+        view.material_ids = main && frame_.material_ids;
         view.lighting.clear();
         view.effect_blocks.fill(zeros);
         view.gbuffer = {};

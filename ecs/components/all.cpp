@@ -19,6 +19,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/height_fog.h"
+#include "ecs/components/ink.h"
 #include "ecs/components/input.h"
 #include "ecs/components/lens_flare.h"
 #include "ecs/components/lifetime.h"
@@ -111,6 +112,7 @@ void register_all_components() {
     register_component<MeshInstance>();
     register_component<MeshLevels>();
     register_component<Inflate>();
+    register_component<ToonOutline>();
     register_component<SpeedLines>();
     register_component<Skeleton>();
     register_component<ClipPlayer>();
@@ -195,6 +197,8 @@ void register_all_components() {
     register_resource<Glow>();
     register_resource<Glare>();
     register_resource<Vignette>();
+    register_resource<InkLines>();
+    register_resource<Hatching>();
     register_resource<LensRain>();
     register_resource<HeightFog>();
     register_resource<Weather>();

@@ -8,8 +8,8 @@ namespace limn {
 /// depth 0; their other attributes are undefined.
 struct Gbuffer {
     TextureId surface;   ///< RGBA32UI
-    TextureId material;  ///< R32UI: index of the material's record; only valid() where lighting
-                         ///< passes read it; RG32UI with `layers`
+    TextureId material;  ///< R32UI: index of the material's record; only valid() where passes
+                         ///< read it; RG32UI with `layers`
     TextureId layers;    ///< RGBA32UI: lib/surface_layers.glsl; only valid() where some material
                          ///< has layers
     TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 for background; plus 8 bits of

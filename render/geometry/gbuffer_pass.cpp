@@ -6,6 +6,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/light/hatching_pass.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
@@ -109,8 +110,9 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
         view.gbuffer.velocity = create("gbuffer.velocity", frame.velocity_format);
         writes.push_back(cleared(view.gbuffer.velocity));
     }
-    if (!forward && reads_material_records(frame.materials->shading_models())) {
-        const bool layered = frame.materials->layers() != 0;
+    const bool is_read = !forward && reads_material_records(frame.materials->shading_models());
+    if (is_read || view.material_ids) {
+        const bool layered = is_read && frame.materials->layers() != 0;
         view.gbuffer.material =
             create("gbuffer.material", static_cast<GLenum>(layered ? GL_RG32UI : GL_R32UI));
         writes.push_back(discarded(view.gbuffer.material));
@@ -127,6 +129,7 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             variant.add_if(clipped, "CLIPPED");
             variant.add_if(view.gbuffer.material.valid(), "MATERIAL_RECORDS");
             variant.add_if(view.gbuffer.layers.valid(), "LAYER_TARGETS");
+            variant.add_if(view.data.find<HatchedView>() != nullptr, "HATCHED");
             bind_view(context, view);
             draw_runs(
                 context, view, view.data.get<InstanceList>().opaque, programs,

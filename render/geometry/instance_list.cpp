@@ -370,8 +370,8 @@ void InstanceCollector::add_command(
     run.features = batch.features;
     run.features.bits |= (mesh.colored ? kVertexColor : 0u) | (state.inflated ? kInflate : 0u)
                          | (state.deformed ? kDeformed : 0u);
-    constexpr std::uint32_t kTangentSpace = 1u << layout::kNormalSlot | 1u << layout::kReliefSlot
-                                            | 1u << layout::kClearcoatNormalSlot;
+    constexpr std::uint32_t kTangentSpace =
+        1u << layout::kNormalSlot | 1u << layout::kReliefSlot | 1u << layout::kClearcoatNormalSlot;
     if (run.features.maps.has_any(kTangentSpace) && !mesh.tangents) {
         run.features.maps.remove_all(kTangentSpace);
         list.without_tangents.push_back(mesh_index(items, state));

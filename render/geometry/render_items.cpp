@@ -2,6 +2,7 @@
 
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
+#include "ecs/components/ink.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/shadow.h"
 #include "ecs/world.h"
@@ -13,7 +14,8 @@
 #include <atomic>
 #include <cmath>
 
-// Techniques: engine.projectile-instances, particle.mesh-particles, shade.inflate
+// Techniques: engine.projectile-instances, particle.mesh-particles, shade.inflate,
+//     tex.toon-outline
 
 namespace limn {
 namespace {
@@ -97,6 +99,7 @@ void RenderItems::update(
         block.inflate = inflate;
         block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
         block.casts_shadows = !chunk.has<NoShadow>();
+        block.inside_out_ = false;
         block.archetype_ = &chunk.archetype();
         block.first_row_ = chunk.first_row();
         if (!kept) {
@@ -106,10 +109,37 @@ void RenderItems::update(
     });
     refreshed_ = refreshed;
     add_particles();
+    add_outlines();
     epoch_ = world.core().epoch;
     version_ = world.version();
     mesh_revision_ = meshes.revision();
     material_revision_ = materials.revision();
+}
+
+RenderItemBlock& RenderItems::add_block() {
+    if (count_ == blocks_.size()) {
+        blocks_.push_back(std::make_unique<RenderItemBlock>());
+    }
+    RenderItemBlock& block = *blocks_[count_++];
+    block.copies_.entities.clear();
+    block.copies_.surfaces.clear();
+    block.copies_.now.clear();
+    block.copies_.previous.clear();
+    block.copies_.inflate.clear();
+    block.inside_out_ = false;
+    return block;
+}
+
+void RenderItems::use_copies(RenderItemBlock& block) {
+    const RenderItemBlock::Copies& copies = block.copies_;
+    block.entities = copies.entities;
+    block.surfaces = copies.surfaces;
+    block.now = copies.now;
+    block.previous = copies.previous;
+    block.inflate = copies.inflate;
+    block.archetype_ = nullptr;
+    refresh(block);
+    size_ += copies.now.size();
 }
 
 void RenderItems::add_particles() {
@@ -118,33 +148,53 @@ void RenderItems::add_particles() {
             const std::vector<MeshParticle>& particles = state.instances;
             for (std::size_t first = 0; first < particles.size(); first += kCullBlock) {
                 const std::size_t end = std::min<std::size_t>(first + kCullBlock, particles.size());
-                if (count_ == blocks_.size()) {
-                    blocks_.push_back(std::make_unique<RenderItemBlock>());
-                }
-                RenderItemBlock& block = *blocks_[count_++];
+                RenderItemBlock& block = add_block();
                 RenderItemBlock::Copies& copies = block.copies_;
                 copies.entities.assign(end - first, entity);
-                copies.surfaces.clear();
-                copies.now.clear();
-                copies.previous.clear();
                 for (std::size_t i = first; i < end; ++i) {
                     copies.surfaces.push_back({particles[i].mesh, mesh.material});
                     copies.now.push_back({particles[i].now});
                     copies.previous.push_back({particles[i].before});
                 }
-                block.entities = copies.entities;
-                block.surfaces = copies.surfaces;
-                block.now = copies.now;
-                block.previous = copies.previous;
-                block.inflate = {};
                 block.jumps = nullptr;
                 block.casts_shadows = !world_->has<NoShadow>(entity);
-                block.archetype_ = nullptr;
-                refresh(block);
-                size_ += end - first;
+                use_copies(block);
             }
         };
     world_->query<const ParticleMesh, const ParticleMeshState>().each(add);
+}
+
+void RenderItems::add_outlines() {
+    RenderItemBlock* block = nullptr;
+    const auto* const jumps = world_->find_resource<StepJumps>();
+    const auto add = [&](Entity entity, const ToonOutline& outline, const MeshInstance& surface,
+                         const WorldTransform& now, const PreviousWorldTransform* previous,
+                         const Inflate* inflate) {
+        if (block == nullptr || block->copies_.now.size() == kCullBlock) {
+            if (block != nullptr) {
+                use_copies(*block);
+            }
+            block = &add_block();
+            block->inside_out_ = true;
+            block->jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
+            block->casts_shadows = false;
+        }
+        RenderItemBlock::Copies& copies = block->copies_;
+        copies.entities.push_back(entity);
+        copies.surfaces.push_back({surface.mesh, outline.material});
+        copies.now.push_back(now);
+        copies.previous.push_back(
+            previous != nullptr ? *previous : PreviousWorldTransform{now.world});
+        copies.inflate.push_back({outline.width + (inflate != nullptr ? inflate->distance : 0.0f)});
+    };
+    world_
+        ->query<
+            const ToonOutline, const MeshInstance, const WorldTransform,
+            Optional<const PreviousWorldTransform>, Optional<const Inflate>>()
+        .each(add);
+    if (block != nullptr) {
+        use_copies(*block);
+    }
 }
 
 void RenderItems::refresh(RenderItemBlock& block) const {
@@ -152,7 +202,8 @@ void RenderItems::refresh(RenderItemBlock& block) const {
     BoxBlock& boxes = block.boxes;
     block.hashed_ = false;
     const bool may_deform =
-        block.archetype_ != nullptr && block.archetype_->has(component_id<Deformed>);
+        block.inside_out_
+        || (block.archetype_ != nullptr && block.archetype_->has(component_id<Deformed>));
     for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t mesh = block.surfaces[i].mesh.index;
         const std::uint32_t shape =
@@ -183,7 +234,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
             {.blended = materials_->batch(batch).blend,
              .inflated = !block.inflate.empty(),
              .deformed = deformed,
-             .mirrored = det < 0,
+             .mirrored = (det < 0) != block.inside_out_,
              .batch = batch,
              .index = deformed ? shape : mesh});
     }

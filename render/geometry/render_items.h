@@ -27,7 +27,9 @@ class World;
 // by the change versions of its columns, has neither changed nor moved since the last frame. In a
 // world at rest a frame costs one comparison per chunk.
 
-// Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world.
+// Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world; and
+// so are outlines (ToonOutline): the same meshes, inflated and turned inside out, so that only
+// their far sides are drawn.
 
 /// Draw state of an item as a number, by which items are sorted and counted. From high bits to low:
 /// blended, inflated, deformed, batch (28 bits), mirrored, level of coarse triangles (3 bits),
@@ -109,8 +111,10 @@ struct RenderItemBlock {
         std::vector<MeshInstance> surfaces;
         std::vector<WorldTransform> now;
         std::vector<PreviousWorldTransform> previous;
+        std::vector<Inflate> inflate;
     };
     Copies copies_;
+    bool inside_out_ = false;  ///< back faces are drawn instead of front faces
 };
 
 /// Reuses its memory, and keeps unchanged blocks, from frame to frame.
@@ -148,7 +152,12 @@ class RenderItems {
     }
 
   private:
+    /// A block of items that are not rows of the world, to be filled with up to kCullBlock of them.
+    RenderItemBlock& add_block();
+    /// Adds the copies of a block as its items.
+    void use_copies(RenderItemBlock& block);
     void add_particles();
+    void add_outlines();
     void refresh(RenderItemBlock& block) const;
     void hash_block(RenderItemBlock& block) const;
 

@@ -1,5 +1,6 @@
 #include "render/material/material_blocks.h"
 
+#include "ecs/components/ink.h"
 #include "ecs/components/surface.h"
 #include "render/material/diffusion_profile.h"
 #include "render/material/hair_lobes.h"
@@ -11,21 +12,27 @@
 #include "render/shaders/material_clear_gpu.h"
 #include "render/shaders/material_lafortune_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
+#include "render/shaders/material_strand_gpu.h"
 #include "render/shaders/material_subsurface_gpu.h"
+#include "render/shaders/material_toon_gpu.h"
 #include "render/shaders/relief_gpu.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <optional>
+
+// Techniques: shade.strand-banks, tex.toon-ramp
 
 namespace limn {
 namespace {
 
 std::optional<layout::ClassicBlock> make_classic_block(const Material& m) {
     const bool classic = m.shading == ShadingModel::Blinn || m.shading == ShadingModel::Phong
-                         || m.shading == ShadingModel::Skin;
+                         || m.shading == ShadingModel::Skin || m.shading == ShadingModel::Toon
+                         || m.shading == ShadingModel::Strand;
     return classic ? std::optional(
                layout::ClassicBlock{.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f))})
                    : std::nullopt;
@@ -75,6 +82,37 @@ std::optional<layout::ReliefBlock> make_relief_block(const Material& m) {
     const Vec4 search = {m.relief_depth, m.relief_steps, m.relief_refinements, m.relief_shadow};
     return is_used(m.relief_texture) ? std::optional(layout::ReliefBlock{.search = search})
                                      : std::nullopt;
+}
+
+static_assert(kMaxToonBands == layout::kMaxToonBands);
+
+/// Of a material without a ramp: three tones that change at 0.3 and 0.7.
+constexpr float kDefaultTones[] = {0.25f, 0.25f, 0.25f, 0.6f, 0.6f, 0.6f, 0.6f, 1.0f, 1.0f, 1.0f};
+
+std::optional<layout::ToonBlock> make_toon_block(const Material& m) {
+    if (m.shading != ShadingModel::Toon) {
+        return std::nullopt;
+    }
+    layout::ToonBlock block = {};
+    std::size_t count = std::min<std::size_t>(m.ramp.size(), layout::kMaxToonBands);
+    for (std::size_t i = 0; i < count; ++i) {
+        block.bands[i] = Vec4(m.ramp[i], 0);
+    }
+    if (count == 0) {
+        count = std::size(kDefaultTones);
+        for (std::size_t i = 0; i < count; ++i) {
+            block.bands[i] = Vec4(Vec3(kDefaultTones[i]), 0);
+        }
+    }
+    block.bands[0].w = static_cast<float>(count);
+    return block;
+}
+
+std::optional<layout::StrandBlock> make_strand_block(const Material& m) {
+    const float a = m.anisotropy_rotation;
+    return m.shading == ShadingModel::Strand
+               ? std::optional(layout::StrandBlock{.direction = {std::cos(a), std::sin(a), 0, 0}})
+               : std::nullopt;
 }
 
 std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) {
@@ -128,6 +166,8 @@ constexpr BlockKind kKinds[] = {
     block_kind<make_classic_block>(layout::kClassicBlock, false),
     block_kind<make_skin_block>(layout::kSkinBlock, true),
     block_kind<make_lafortune_block>(layout::kLafortuneBlock, true),
+    block_kind<make_toon_block>(layout::kToonBlock, true),
+    block_kind<make_strand_block>(layout::kStrandBlock, true),
     block_kind<make_block_of_hair>(layout::kHairBlock, true),
     block_kind<make_subsurface_block>(layout::kSubsurfaceBlock, true),
 };

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-// Techniques: bump.normal-map, skin.detail
+// Techniques: bump.normal-map, shade.anisotropy-map, skin.detail
 
 namespace limn {
 namespace {
@@ -75,8 +75,10 @@ std::span<const MapSlot> map_slots() {
 }
 
 bool has_map(const Material& material, const MapSlot& slot) {
+    const bool is_of_strands =
+        slot.number == layout::kAnisotropySlot && material.shading == ShadingModel::Strand;
     return is_used(material.*slot.texture)
-           && (slot.layer == 0 || (layers_of(material) & slot.layer) != 0);
+           && (slot.layer == 0 || (layers_of(material) & slot.layer) != 0 || is_of_strands);
 }
 
 std::optional<std::uint32_t> MapBindings::add(const MapBinding& map) {

@@ -30,6 +30,10 @@ layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks)
         .maps = {}};
 }
 
+bool has_strands(ShadingModel model) {
+    return model == ShadingModel::Hair || model == ShadingModel::Strand;
+}
+
 GLenum wrap_mode(Wrap wrap) {
     return wrap == Wrap::Repeat   ? GL_REPEAT
            : wrap == Wrap::Mirror ? GL_MIRRORED_REPEAT
@@ -137,7 +141,7 @@ void MaterialPool::add_material(const Material& material) {
     batch.features.bits = uv_feature(material);
     batch.features.bits |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features.bits |= material.double_sided ? kDoubleSided : 0u;
-    batch.features.bits |= material.shading == ShadingModel::Hair ? kStrands : 0u;
+    batch.features.bits |= has_strands(material.shading) ? kStrands : 0u;
     if (material.transmission > 0) {
         batch.features.bits |= kTransmission | (material.thickness > 0 ? kRefraction : 0u);
         batch.features.bits |= material.thickness > 0 && material.dispersion > 0 ? kDispersion : 0u;

@@ -10,10 +10,12 @@ constexpr unsigned bit(ShadingModel model) {
     return 1u << static_cast<unsigned>(model);
 }
 constexpr unsigned kMirrors = bit(ShadingModel::Pbr) | bit(ShadingModel::Unlit);
-constexpr unsigned kClassic =
-    bit(ShadingModel::Blinn) | bit(ShadingModel::Phong) | bit(ShadingModel::Skin);
+constexpr unsigned kClassic = bit(ShadingModel::Blinn) | bit(ShadingModel::Phong)
+                              | bit(ShadingModel::Skin) | bit(ShadingModel::Toon)
+                              | bit(ShadingModel::Strand);
 constexpr unsigned kHair = bit(ShadingModel::Hair);
 constexpr unsigned kLayers = bit(ShadingModel::Pbr);  // material_layers.h
+constexpr unsigned kStrand = bit(ShadingModel::Strand);
 
 /// A field that only some models read, and those models.
 struct FieldReaders {
@@ -24,8 +26,8 @@ constexpr FieldReaders kFieldReaders[] = {
     {"metalness", kMirrors},
     {"roughness", kMirrors | bit(ShadingModel::Subsurface) | kHair},
     {"metal_rough_texture", kMirrors | bit(ShadingModel::Subsurface) | kHair},
-    {"emission", ~kHair},
-    {"emission_texture", ~kHair},
+    {"emission", ~(kHair | kStrand)},
+    {"emission_texture", ~(kHair | kStrand)},
     {"specular", kClassic | bit(ShadingModel::Subsurface)},
     {"shininess", kClassic},
     {"skin_color", bit(ShadingModel::Skin)},
@@ -51,13 +53,14 @@ constexpr FieldReaders kFieldReaders[] = {
     {"specular_weight_texture", kLayers},
     {"specular_tint_texture", kLayers},
     {"anisotropy", kLayers},
-    {"anisotropy_rotation", kLayers},
-    {"anisotropy_texture", kLayers},
+    {"anisotropy_rotation", kLayers | kStrand},
+    {"anisotropy_texture", kLayers | kStrand},
     {"iridescence", kLayers},
     {"iridescence_index", kLayers},
     {"iridescence_thickness", kLayers},
     {"iridescence_texture", kLayers},
     {"iridescence_thickness_texture", kLayers},
+    {"ramp", bit(ShadingModel::Toon)},
 };
 
 }  // namespace

@@ -37,6 +37,8 @@ inline constexpr ShadingModelRow kShadingModels[] = {
     {ShadingModel::Subsurface, "subsurface", "kModelSubsurface", "SHADE_SUBSURFACE", "subsurface",
      true},
     {ShadingModel::Hair, "hair", "kModelHair", "SHADE_HAIR", "hair", true},
+    {ShadingModel::Toon, "toon", "kModelToon", "SHADE_TOON", "toon", true},
+    {ShadingModel::Strand, "strand", "kModelStrand", "SHADE_STRAND", "strand", true},
 };
 inline constexpr std::size_t kMaxShadingModels = 16;  ///< four bits in the G-buffer
 static_assert(std::size(kShadingModels) < kMaxShadingModels - 1, "0 is no surface");

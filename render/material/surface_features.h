@@ -25,7 +25,7 @@ enum SurfaceFeature : std::uint32_t {
     kVelocity = 1u << 9,         // added by the view
     kTransmission = 1u << 10,
     kRefraction = 1u << 11,   // with kTransmission: the medium has a thickness
-    kStrands = 1u << 12,      // of hair
+    kStrands = 1u << 12,      // of hair and other strands
     kLayered = 1u << 13,      // material_layers.h
     kAnisotropic = 1u << 14,  // with kLayered
     kDispersion = 1u << 15,   // with kRefraction

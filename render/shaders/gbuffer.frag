@@ -3,6 +3,7 @@
 //   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
 //   MATERIAL_RECORDS  also the index of the material
 //   LAYER_TARGETS  with MATERIAL_RECORDS: also the layers of materials that have some
+//   HATCHED     strokes of hatching
 // Techniques: deferred.gbuffer
 #version 450
 #include "lib/view.glsl"

@@ -24,7 +24,7 @@ const uint kSheenSlot = 12u;
 const uint kSheenRoughnessSlot = 13u;       // a
 const uint kSpecularWeightSlot = 14u;       // a
 const uint kSpecularTintSlot = 15u;
-const uint kAnisotropySlot = 16u;           // rg: direction, b: strength
+const uint kAnisotropySlot = 16u;           // rg: direction along tangent and bitangent, b: strength
 const uint kIridescenceSlot = 17u;          // r
 const uint kIridescenceThicknessSlot = 18u; // g
 

@@ -54,15 +54,18 @@ const std::vector<std::optional<ShadingModel>> kAllModels = [] {
     return models;
 }();
 
+constexpr int kFirstBall = 266;  // a column
+constexpr int kBallRow = 80;
+
 /// Balls in a row under a lamp, one for each model, with something to reflect; the first is visible
-/// around pixel 118, the others 12 pixels apart. A gap for each nullopt.
+/// around pixel kFirstBall, the others 12 pixels apart. A gap for each nullopt.
 class Balls : public Scene {
   public:
     explicit Balls(const std::vector<std::optional<ShadingModel>>& models) {
         const MeshId ball = add(make_ball(16));
         for (std::size_t i = 0; i < models.size(); ++i) {
             if (models[i]) {
-                const float x = -4.2f + 1.2f * static_cast<float>(i);
+                const float x = -5.4f + 1.2f * static_cast<float>(i);
                 place(
                     ball, add(colored(*models[i])),
                     affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.55f)));
@@ -73,7 +76,7 @@ class Balls : public Scene {
     }
     gpu::FloatImage picture(LightMethod method) {
         world.insert_resource(Rendering{method});
-        return radiance(look({0, 0, 4}, {0, 0, 0}, 320, 80));  // 10 pixels per meter
+        return radiance(look({0, 0, 8}, {0, 0, 0}, 640, 160));  // 10 pixels per meter
     }
 };
 
@@ -201,7 +204,7 @@ TEST_CASE("shading models: another value of a field changes only the models that
         const gpu::FloatImage changed = balls.picture(LightMethod::Clustered);
         for (std::size_t i = 0; i < std::size(kShadingModels); ++i) {
             float difference = 0;
-            const int middle = 118 + 12 * static_cast<int>(i);
+            const int middle = kFirstBall + 12 * static_cast<int>(i);
             for (int y = 0; y < plain.height; ++y) {
                 for (int x = middle - 4; x < middle + 4; ++x) {  // perspective draws balls out
                     const Vec3 apart = rgb_at(plain, x, y) - rgb_at(changed, x, y);
@@ -231,8 +234,8 @@ TEST_CASE("shading models: no model affects the others") {
         std::vector<std::optional<ShadingModel>> alone(kAllModels.size());
         alone[i] = kAllModels[i];
         const gpu::FloatImage one = Balls(alone).picture(LightMethod::Clustered);
-        const int x = 118 + 12 * static_cast<int>(i);
-        for (int y = 37; y < 43; ++y) {
+        const int x = kFirstBall + 12 * static_cast<int>(i);
+        for (int y = kBallRow - 3; y < kBallRow + 3; ++y) {
             for (int c = 0; c < 3; ++c) {
                 CHECK(one.at(x, y, c) > 0.01f);
                 CHECK(one.at(x, y, c) == test::near(all.at(x, y, c)).epsilon(1e-4));

@@ -11,6 +11,7 @@
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/ink.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
 
@@ -330,7 +331,8 @@ class LevelParser {
             for (TextureSlot* const slot :
                  {&material.base_color_texture, &material.metal_rough_texture,
                   &material.normal_texture, &material.occlusion_texture, &material.emission_texture,
-                  &material.wrinkle_texture, &material.relief_texture}) {
+                  &material.wrinkle_texture, &material.relief_texture,
+                  &material.anisotropy_texture}) {
                 slot->scale = scaled.scale;
             }
         }
@@ -338,6 +340,11 @@ class LevelParser {
             return error_at(
                 at, json.find("lobes")->at, fmt::format("{} lobes", material.lobes.size()),
                 fmt::format("at most {}", kMaxLafortuneLobes));
+        }
+        if (material.ramp.size() > kMaxToonBands) {
+            return error_at(
+                at, json.find("ramp")->at, fmt::format("{} colors", material.ramp.size()),
+                fmt::format("at most {}", kMaxToonBands));
         }
         materials_[member.key] = static_cast<std::uint32_t>(level_.assets.materials.size());
         level_.assets.materials.push_back(std::move(material));

@@ -299,6 +299,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"shade.program-lifecycle", "shader compilation and reload"},
     {"shade.sheen", "sheen, velvet, cloth, Charlie distribution, KHR_materials_sheen"},
     {"shade.stdlib", "math library of shaders"},
+    {"shade.strand-banks", "anisotropic shading of strands, Banks, satin, brushed metal"},
     {"shade.stream-kernel", "SPMD kernels, compute"},
     {"shade.thin-film",
      "thin-film interference, iridescence, soap bubble, KHR_materials_iridescence"},
@@ -341,6 +342,14 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"skin.pipeline", "expression wrinkles: wrinkle maps of furrows, shown by compression"},
     {"skin.transmission", "translucency, light through thin skin"},
     {"tex.combine", "multitexturing"},
+    {"tex.hatching", "hatching, tonal art maps, pen-and-ink rendering, cross-hatching, "
+                     "non-photorealistic rendering"},
+    {"tex.ink-lines",
+     "edge detection, image-space outlines, depth and normal edges, contour lines"},
+    {"tex.toon-outline", "toon outline, inverted hull, silhouette by back faces"},
+    {"tex.toon-ramp", "toon shading, cel shading, ramp texture"},
+    {"tex.two-part-mapping", "two-part texture mapping, cylindrical mapping, spherical mapping, "
+                             "box mapping, projected uvs"},
     {"water.crest-spray", "spray of breaking crests"},
     {"water.fft-synthesis", "FFT ocean, Tessendorf"},
     {"water.fresnel", "Fresnel reflectance of water"},

@@ -12,7 +12,7 @@
 //
 //     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9, 0: folds that light bounces in,  fades 1
 //
-// and the shading model has its highest bit set. Hair emits nothing: w is
+// and the shading model has its highest bit set. Hair and Strand emit nothing: w is
 //
 //     w   direction of the strand, octahedral 16 + 16, or 0: unknown
 //
@@ -34,7 +34,7 @@
 #if defined(WRINKLE_BOUNCE) && !defined(FOLD_LIGHT)
 #define FOLD_LIGHT
 #endif
-#if defined(SHADE_HAIR) && !defined(STRANDS)
+#if (defined(SHADE_HAIR) || defined(SHADE_STRAND)) && !defined(STRANDS)
 #define STRANDS
 #endif
 #ifdef LAYERED
@@ -83,7 +83,7 @@ struct SurfaceSample {
     bool smooth_is_stored;  // otherwise raised is 1
 #endif
 #ifdef STRANDS
-    vec3 strand_ws;  // of Hair: unit, from root to tip; 0: unknown
+    vec3 strand_ws;  // of Hair, from root to tip, and Strand: unit; 0: unknown
 #endif
 #ifdef LAYERED
     SurfaceLayers layers;  // not in pack_surface()
@@ -92,7 +92,7 @@ struct SurfaceSample {
 
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
 
-// Clears the members that only wrinkled skin, hair and layered surfaces use.
+// Clears the members that only wrinkled skin, strands and layered surfaces use.
 void set_plain(inout SurfaceSample s) {
 #ifdef SMOOTH_NORMALS
     s.smooth_normal_ws = s.normal_ws;
@@ -107,6 +107,11 @@ void set_plain(inout SurfaceSample s) {
 #ifdef LAYERED
     s.layers = plain_layers(s.normal_ws);
 #endif
+}
+
+// Whether surfaces have a direction of strands and emit nothing.
+bool has_strands(uint model) {
+    return model == kModelHair || model == kModelStrand;
 }
 
 // Splits the color of an unlit surface into emission and mirrored fraction.
@@ -164,7 +169,7 @@ uvec4 pack_surface(SurfaceSample s) {
 #endif
 #ifdef STRANDS
     uint strand = s.strand_ws == vec3(0.0) ? 0u : pack_direction(s.strand_ws);
-    emission = s.model == kModelHair ? strand : emission;
+    emission = has_strands(s.model) ? strand : emission;
 #endif
     return uvec4(
         pack_direction(s.normal_ws),
@@ -185,13 +190,13 @@ SurfaceSample unpack_surface(uvec4 g) {
     s.material = 0u;
     s.model = g.z >> 25 & 15u;
     bool is_smooth_normal = (g.z >> 25 & kSmoothNormalBit) != 0u;
-    s.emission = is_smooth_normal || s.model == kModelHair ? vec3(0.0) : unpack_rgb9e5(g.w);
+    s.emission = is_smooth_normal || has_strands(s.model) ? vec3(0.0) : unpack_rgb9e5(g.w);
 #ifdef SMOOTH_NORMALS
     s.smooth_is_stored = is_smooth_normal;
     unpack_smooth_normal(s, g.w);
 #endif
 #ifdef STRANDS
-    s.strand_ws = s.model == kModelHair && g.w != 0u ? unpack_direction(g.w) : vec3(0.0);
+    s.strand_ws = has_strands(s.model) && g.w != 0u ? unpack_direction(g.w) : vec3(0.0);
 #endif
 #ifdef LAYERED
     s.layers = plain_layers(s.normal_ws);

@@ -215,6 +215,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
     do {
         Incoming light = incoming_local(existing_light(index), position_ws, r.normal, medium);
         light.irradiance *= index < first_shadowed ? 1.0 : 0.0;
+        light.unshadowed *= index < first_shadowed ? 1.0 : 0.0;
         add_light(sum, r, light);
         i += index < first_shadowed ? 1 : 0;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;

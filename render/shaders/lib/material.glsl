@@ -13,8 +13,9 @@
 //   SHIFTED_UV     hooks shift the texture coordinates, whose derivatives are then those from before
 //   OFF_MESH       hooks find the visible point off the mesh, or a hole
 //   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
-//   STRANDS        of hair, which lies along v
+//   STRANDS        of hair, which lies along v, or along a direction of the material and of ANISOTROPY_MAP
 //   LAYERED_SURFACE  with layers (lib/surface_layers.glsl); ANISOTROPIC: one of them stretches highlights
+//   HATCHED        Toon surfaces store the strokes of hatching_pass.h
 //   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
 // Additions of single effects are called by hook_*() (render/material/surface_hooks.h).
 // Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
@@ -22,6 +23,9 @@
 // Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
+#ifdef HATCHED
+#include "lib/hatching.glsl"
+#endif
 #include "lib/interpolation.glsl"
 #include "lib/material_maps.glsl"
 
@@ -163,9 +167,25 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 }
 
 #ifdef STRANDS
-// From root to tip, along v: opposite to the bitangent, in the plane of `normal`.
-vec3 strand_direction(vec3 normal) {
-    vec3 along = -tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
+// Along tangent and bitangent. Of Hair, from root to tip: along v, opposite to the bitangent. Directions of opposite
+// texels cancel where they are filtered, which leaves that of the material.
+vec2 strand_direction_ts(uint model) {
+    vec2 along = vec2(0.0, -1.0);
+    if (model == kModelStrand) {
+        along = block_texel(material_and_flags.x, kStrandBlock, 0).xy;
+#ifdef ANISOTROPY_MAP
+        vec2 d = MAP_TEXEL(ANISOTROPY_MAP, kAnisotropySlot).xy * 2.0 - 1.0;
+        along = dot(d, d) > 0.01 ? mat2(along, vec2(-along.y, along.x)) * d : along;
+#endif
+    }
+    return along;
+}
+
+// In the plane of `normal`.
+vec3 strand_direction(vec3 normal, uint model) {
+    vec2 d = strand_direction_ts(model);
+    vec3 bitangent = tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
+    vec3 along = d.x * tangent_ws.xyz + d.y * bitangent;
     along -= normal * dot(normal, along);
     float length2 = dot(along, along);
     return length2 > 1e-8 ? along * inversesqrt(length2) : vec3(0.0);
@@ -274,10 +294,13 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.occlusion = 1.0 + factors.z * (MAP_TEXEL(OCCLUSION_MAP, kOcclusionSlot).r - 1.0);
 #endif
     // Highlights of strands follow their direction, not the normal.
-    s.roughness = s.model == kModelHair ? s.roughness : widen_roughness(s.roughness, s.normal_ws);
+    s.roughness = has_strands(s.model) ? s.roughness : widen_roughness(s.roughness, s.normal_ws);
     set_plain(s);
 #ifdef STRANDS
-    s.strand_ws = strand_direction(s.normal_ws);
+    s.strand_ws = strand_direction(s.normal_ws, s.model);
+#endif
+#ifdef HATCHED
+    s.metalness = s.model == kModelToon ? hatching_tone(map_uv.xy) : s.metalness;
 #endif
 #ifdef LAYERED_SURFACE
     s.layers = surface_layers(s.normal_ws);

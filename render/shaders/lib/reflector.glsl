@@ -170,12 +170,27 @@ float grazing_fade(float cosine) {
 }
 #endif
 
+#ifdef SHADE_TOON
+// Of the light, how much is not shadowed.
+float visible_fraction(Incoming light) {
+    float all = dot(light.unshadowed, vec3(1.0));
+    return min(dot(light.irradiance, vec3(1.0)) / max(all, 1e-20), 1.0);
+}
+#endif
+
 void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float n_l = max(dot(r.normal, light.to_light), 0.0);
     float l_v = dot(light.to_light, r.to_camera);
     vec2 h = half_cosines(n_l, r.n_v, l_v);
 #ifdef SMOOTH_NORMALS
     light.irradiance *= mix(1.0, grazing_fade(dot(r.fading.xyz, light.to_light)), r.fading.w);
+#endif
+#ifdef SHADE_TOON
+    // Shadows move light down the ramp instead of darkening its color.
+    if (r.model == kModelToon) {
+        n_l *= visible_fraction(light);
+        light.irradiance = light.unshadowed;
+    }
 #endif
     Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v, light.to_light));
 #ifdef FOLD_LIGHT
