@@ -7,6 +7,7 @@
 #include "render/geometry/aov_pass.h"
 #include "render/geometry/blend_pass.h"
 #include "render/geometry/gbuffer_pass.h"
+#include "render/geometry/tangent_frames_pass.h"
 #include "render/lens/dazzle_pass.h"
 #include "render/lens/depth_of_field_pass.h"
 #include "render/lens/glare_pass.h"
@@ -29,6 +30,8 @@
 #include "render/light/subsurface_pass.h"
 #include "render/material/furrow_pass.h"
 #include "render/material/texture_combine_pass.h"
+#include "render/material/texture_feedback_pass.h"
+#include "render/material/texture_layers_pass.h"
 #include "render/material/texture_shade_pass.h"
 #include "render/material/wrinkle_maps_pass.h"
 #include "render/material/wrinkle_pass.h"
@@ -48,7 +51,8 @@ namespace {
 
 constexpr EffectEntry kImage[] = {
     // What is in the world, and what is visible in each view.
-    effect<TextureCombineEffect>(0),
+    effect<TextureCombineEffect>(0), effect<TextureFeedbackEffect>(0),
+    effect<TextureLayersEffect>(0),
     effect<WrinkleMapsEffect>(0),          // normals, with which textures are shaded
     effect<TextureShadeEffect>(0),         // after textures are combined
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
@@ -75,7 +79,7 @@ constexpr EffectEntry kImage[] = {
     effect<ParticleEffect>(kSceneViews),  // those behind blended surfaces
     effect<BlendEffect>(kSceneViews),     // after sky and water, which are visible through it
     effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces
-    effect<SpeedLineEffect>(kMainViews),
+    effect<SpeedLineEffect>(kMainViews), effect<TangentFramesEffect>(kMainViews),
 
     // The end of views other than the camera's.
     effect<ProbeEffect>(kSceneViews),  // requests its faces as views; lights all others

@@ -8,6 +8,7 @@
 #include "content/make/models/joined.h"
 #include "content/make/models/masonry.h"
 #include "content/make/models/plants.h"
+#include "content/make/models/projected.h"
 #include "content/make/models/refine_mesh.h"
 #include "content/make/models/retargeted.h"
 #include "content/make/models/shapes.h"
@@ -72,6 +73,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(
             "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),
+        mesh_kind<ProjectedShape, make_projected>(
+            "projected", "another mesh of the level with texture coordinates by projection"),
         mesh_kind<RefinedShape, make_refined>(
             "refined", "another mesh of the level with more triangles where its skin folds"),
         mesh_kind<RetargetedShape, make_retargeted>(

@@ -49,7 +49,10 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
+#include "ecs/components/tangent_frames.h"
 #include "ecs/components/texture_combine.h"
+#include "ecs/components/texture_feedback.h"
+#include "ecs/components/texture_layers.h"
 #include "ecs/components/texture_shade.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
@@ -157,6 +160,8 @@ void register_all_components() {
     register_component<Water>();
     register_component<WaterLook>();
     register_component<TextureCombine>();
+    register_component<TextureFeedback>();
+    register_component<TextureLayers>();
     register_component<TextureShade>();
     register_component<WaterDetail>();
     register_component<WaterWaves>();
@@ -197,6 +202,7 @@ void register_all_components() {
     register_resource<Glow>();
     register_resource<Glare>();
     register_resource<Vignette>();
+    register_resource<TangentFrames>();
     register_resource<InkLines>();
     register_resource<Hatching>();
     register_resource<LensRain>();

@@ -110,6 +110,8 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
         }
     };
     add_images(frame.data.find<DrawnImages>());
+    add_images(frame.data.find<FeedbackImages>());
+    add_images(frame.data.find<LayeredImages>());
     add_images(frame.data.find<ShadedImages>());
     add_images(frame.data.find<WrinkledImages>());
     if (!frame.shapes->work().batches.empty()) {

@@ -57,6 +57,16 @@ struct DrawnImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
+/// The same, for images that are computed from their previous states.
+struct FeedbackImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// The same, for images that stacks of others are blended into.
+struct LayeredImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
 /// The same, for images that are lit texel by texel.
 struct ShadedImages {
     std::vector<const gpu::Texture*> arrays;
@@ -68,7 +78,8 @@ struct WrinkledImages {
 };
 
 /// What passes that call the functions above must declare: `reads`, the DrawnImages, the
-/// ShadedImages, the WrinkledImages and, if meshes are deformed in this frame, their vertices.
+/// FeedbackImages, the LayeredImages, the ShadedImages, the WrinkledImages and, if meshes are
+/// deformed in this frame, their vertices.
 [[nodiscard]] std::vector<Use>
 mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-// Techniques: bump.normal-map, shade.anisotropy-map, skin.detail
+// Techniques: bump.normal-map, shade.anisotropy-map, skin.detail, tex.colour-map
 
 namespace limn {
 namespace {

@@ -38,6 +38,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"anim.shortest-arc", "shortest-arc choice"},
     {"anim.slerp", "spherical linear interpolation, slerp"},
     {"anim.squad", "spherical quadrangle spline, squad"},
+    {"bump.frame-view", "tangent frame visualizer, TBN debug view"},
     {"bump.height-field", "bump mapping from a height field, Blinn 1978"},
     {"bump.nm-from-height", "normal map from a height field"},
     {"bump.normal-encoding", "normal range compression, normal decoding"},
@@ -341,11 +342,15 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"skin.melanin-blood", "skin color by melanin and blood, hemoglobin"},
     {"skin.pipeline", "expression wrinkles: wrinkle maps of furrows, shown by compression"},
     {"skin.transmission", "translucency, light through thin skin"},
+    {"tex.colour-map", "color map, diffuse map, albedo texture"},
     {"tex.combine", "multitexturing"},
+    {"tex.control-map", "control map, roughness map, specular map, packed ORM texture"},
+    {"tex.feedback", "render to texture, ping-pong, game of life, reaction-diffusion"},
     {"tex.hatching", "hatching, tonal art maps, pen-and-ink rendering, cross-hatching, "
                      "non-photorealistic rendering"},
     {"tex.ink-lines",
      "edge detection, image-space outlines, depth and normal edges, contour lines"},
+    {"tex.layer-stack", "multi-layer shader, texture layers, shade tree"},
     {"tex.toon-outline", "toon outline, inverted hull, silhouette by back faces"},
     {"tex.toon-ramp", "toon shading, cel shading, ramp texture"},
     {"tex.two-part-mapping", "two-part texture mapping, cylindrical mapping, spherical mapping, "

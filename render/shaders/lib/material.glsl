@@ -19,7 +19,8 @@
 //   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
 // Additions of single effects are called by hook_*() (render/material/surface_hooks.h).
 // Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
-//     light.phong-pixel, shade.anisotropy-map, shade.derivatives, skin.detail
+//     light.phong-pixel, shade.anisotropy-map, shade.derivatives, skin.detail, tex.colour-map,
+//     tex.control-map
 // Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
