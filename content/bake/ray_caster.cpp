@@ -39,7 +39,8 @@ struct CornerPoints {
 
 /// Where a ray that meets the triangle does so (Moeller and Trumbore 1997). On its edges, and for
 /// rays in its plane, the weights are clamped to the triangle.
-RayHit hit_of(const Ray& ray, const CornerPoints& corners, std::uint32_t triangle, float rough_t) {
+RayHit
+hit_of(const MeshRay& ray, const CornerPoints& corners, std::uint32_t triangle, float rough_t) {
     const glm::dvec3 origin(ray.origin);
     const glm::dvec3 direction(ray.direction);
     const glm::dvec3 a = corners.p[1] - corners.p[0];
@@ -133,7 +134,7 @@ struct RayCaster::State {
     }
 
     void build();
-    [[nodiscard]] RTCRayHit trace(RTCIntersectContext& context, const Ray& ray) const;
+    [[nodiscard]] RTCRayHit trace(RTCIntersectContext& context, const MeshRay& ray) const;
 };
 
 namespace {
@@ -141,7 +142,7 @@ namespace {
 /// Rejects each hit after recording it, so that Embree goes on.
 struct HitCollector {
     RTCIntersectContext context;  // first: Embree passes its address
-    const Ray* ray = nullptr;
+    const MeshRay* ray = nullptr;
     std::vector<RayHit>* hits = nullptr;
     const Vec3* positions = nullptr;
     const std::uint32_t* indices = nullptr;
@@ -222,7 +223,7 @@ void RayCaster::State::build() {
     rtcCommitScene(scene);
 }
 
-RTCRayHit RayCaster::State::trace(RTCIntersectContext& context, const Ray& ray) const {
+RTCRayHit RayCaster::State::trace(RTCIntersectContext& context, const MeshRay& ray) const {
     RTCRayHit query = {};
     query.ray.org_x = ray.origin.x;
     query.ray.org_y = ray.origin.y;
@@ -270,7 +271,7 @@ const Bounds& RayCaster::bounds() const {
     return state_->bounds;
 }
 
-std::optional<RayHit> RayCaster::nearest(const Ray& ray) const {
+std::optional<RayHit> RayCaster::nearest(const MeshRay& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     const RTCRayHit found = state_->trace(context, ray);
@@ -280,7 +281,7 @@ std::optional<RayHit> RayCaster::nearest(const Ray& ray) const {
     const float t = found.ray.tfar;
     // Embree's t has the rounding errors of floats; within those, the exact t decides.
     const float slack = 1e-5f * t + 1e-6f * state_->size / glm::length(ray.direction);
-    Ray near = ray;
+    MeshRay near = ray;
     near.min_t = std::max(t - slack, ray.min_t);
     near.max_t = std::min(t + slack, ray.max_t);
     thread_local std::vector<RayHit> hits;
@@ -289,7 +290,7 @@ std::optional<RayHit> RayCaster::nearest(const Ray& ray) const {
                         : hits.front();
 }
 
-void RayCaster::find_all(const Ray& ray, std::vector<RayHit>& hits) const {
+void RayCaster::find_all(const MeshRay& ray, std::vector<RayHit>& hits) const {
     hits.clear();
     HitCollector collector;
     rtcInitIntersectContext(&collector.context);

@@ -23,7 +23,7 @@ namespace limn {
 
 /// origin + t direction for min_t <= t <= max_t, within rounding errors: start before a surface
 /// that must be hit. The direction need not have unit length.
-struct Ray {
+struct MeshRay {
     Vec3 origin = Vec3(0);
     Vec3 direction = {0, 0, -1};
     float min_t = 0;  ///< >= 0
@@ -46,11 +46,11 @@ class RayCaster {
     ~RayCaster();
 
     /// The hit with the smallest t.
-    [[nodiscard]] std::optional<RayHit> nearest(const Ray& ray) const;
+    [[nodiscard]] std::optional<RayHit> nearest(const MeshRay& ray) const;
 
     /// Replaces `hits` by all hits, by increasing t, at equal t by triangle. A ray through an edge
     /// hits both triangles at it.
-    void find_all(const Ray& ray, std::vector<RayHit>& hits) const;
+    void find_all(const MeshRay& ray, std::vector<RayHit>& hits) const;
 
     /// The point of the triangles that is nearest to `point`, as a hit whose t is the distance;
     /// none within `max_distance`.

@@ -26,7 +26,7 @@ ReliefSample cast_relief(
     // Down to the floor of the relief, from a little above the polygon, so that a surface on it is
     // not missed. t - kLead is the depth.
     constexpr float kLead = 0x1p-6f;
-    const Ray ray = {
+    const MeshRay ray = {
         .origin = Vec3(at, kLead * tile.depth),
         .direction = {0, 0, -tile.depth},
         .max_t = 1 + kLead + 1e-6f};

@@ -138,7 +138,7 @@ TileCaster::TileCaster(const TileSurface& tile)
     : caster_(tile.positions, tile.indices), low_(tile.low), size_(tile.size),
       box_(caster_.bounds()), repeats_(tile.repeats) {}
 
-std::optional<RayHit> TileCaster::nearest(const Ray& ray) const {
+std::optional<RayHit> TileCaster::nearest(const MeshRay& ray) const {
     if (!repeats_ || is_empty(box_)) {
         return caster_.nearest(ray);
     }
@@ -172,7 +172,7 @@ std::optional<RayHit> TileCaster::nearest(const Ray& ray) const {
             }
         }
         leave = std::max(leave, ahead);
-        Ray local = ray;
+        MeshRay local = ray;
         local.origin.x -= tile.x * size_.x;
         local.origin.y -= tile.y * size_.y;
         local.min_t = std::max(t - kSlack, ray.min_t);

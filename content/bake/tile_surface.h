@@ -46,7 +46,7 @@ class TileCaster {
 
     /// The nearest hit. Where the tile repeats, the ray must not run within the relief forever: it
     /// leaves through z = 0 or -depth, or `max_t` is finite.
-    [[nodiscard]] std::optional<RayHit> nearest(const Ray& ray) const;
+    [[nodiscard]] std::optional<RayHit> nearest(const MeshRay& ray) const;
     [[nodiscard]] const RayCaster& single() const { return caster_; }
 
   private:

@@ -28,7 +28,7 @@ struct TruthHit {
 };
 
 /// All triangles, one by one, by planes and signed areas. `slack`: how far outside still counts.
-TruthHit find_by_brute_force(const MeshData& mesh, const Ray& ray, double slack) {
+TruthHit find_by_brute_force(const MeshData& mesh, const MeshRay& ray, double slack) {
     TruthHit best;
     const DVec3 d(ray.direction);
     for (std::uint32_t i = 0; i < mesh.indices.size() / 3; ++i) {
@@ -68,7 +68,7 @@ MeshData make_two_spheres() {
     return mesh;
 }
 
-Ray random_ray(std::mt19937& random) {
+MeshRay random_ray(std::mt19937& random) {
     std::uniform_real_distribution<float> place(-2, 2);
     const Vec3 from = {place(random), place(random), place(random)};
     const Vec3 to = {place(random), place(random), place(random)};
@@ -84,7 +84,7 @@ TEST_CASE("ray caster: nearest hits are those of a search over all triangles") {
     int compared = 0;
     int hits = 0;
     for (int i = 0; i < 800; ++i) {
-        const Ray ray = random_ray(random);
+        const MeshRay ray = random_ray(random);
         const TruthHit outer = find_by_brute_force(mesh, ray, 1e-5);
         const TruthHit inner = find_by_brute_force(mesh, ray, -1e-5);
         const std::optional<RayHit> found = caster.nearest(ray);
@@ -108,7 +108,7 @@ TEST_CASE("ray caster: the weights of a hit give the point on the ray") {
     const RayCaster caster(mesh.positions, mesh.indices);
     std::mt19937 random(8);
     for (int i = 0; i < 1000; ++i) {
-        const Ray ray = random_ray(random);
+        const MeshRay ray = random_ray(random);
         if (const std::optional<RayHit> hit = caster.nearest(ray)) {
             const Vec3 point = at_hit<Vec3>(*hit, mesh.indices, mesh.positions);
             CHECK(glm::length(point - (ray.origin + hit->t * ray.direction)) < 2e-6f);
@@ -124,7 +124,7 @@ TEST_CASE("ray caster: all hits come in order, the first is the nearest, and sid
     std::vector<RayHit> hits;
     int pairs = 0;
     for (int i = 0; i < 1000; ++i) {
-        Ray ray = random_ray(random);
+        MeshRay ray = random_ray(random);
         ray.origin *= 4.0f;
         caster.find_all(ray, hits);
         const std::optional<RayHit> nearest = caster.nearest(ray);
