@@ -32,6 +32,7 @@ quick() {
     'limn bench'*) command="$command --size 64x36 --frames 2 --warmup 1" ;;
     'limn hash'*) command="$command --frames 20" ;;
     'limn import'* | 'limn speak'* | 'limn bake strain_model'*) [ -d ../shared/assets ] || return ;;
+    'limn bake detail'*) command="$command --set size=64" ;;
     'limn quality --html'*) command=${command/quality/quality surfaces} ;;
     esac
     echo "$command"
@@ -49,7 +50,10 @@ if [ -d ../shared/assets ]; then
 fi
 for name in model.glb helmet.glb face.glb clock.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/model.obj"
-for name in a.png b.png before.png after.png model.exr memorial.exr museum.exr; do
+for name in low.obj high.obj; do
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >"$folder/$name"
+done
+for name in a.png b.png before.png after.png heights.png model.exr memorial.exr museum.exr; do
     "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
 done
 

@@ -1,6 +1,9 @@
 #include "content/app/commands/bake_command.h"
 
+#include "content/app/commands/bake_detail.h"
 #include "content/app/commands/bake_photometric.h"
+#include "content/app/commands/bake_recipe.h"
+#include "content/app/commands/bake_relief.h"
 #include "content/app/commands/bake_strain_model.h"
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/progress.h"
@@ -8,10 +11,8 @@
 #include "content/bake/furrow_trace.h"
 #include "content/game/game.h"
 #include "content/load/files/exr_file.h"
-#include "content/load/files/json_document.h"
 #include "content/load/files/png_file.h"
 #include "content/load/gltf/gltf_load.h"
-#include "content/load/level/component_json.h"
 #include "content/make/find_kind.h"
 #include "ecs/base/check.h"
 #include "ecs/base/text.h"
@@ -62,21 +63,6 @@ Result<MeshData> load_mesh(const std::string& path, const std::string& name) {
     }
     found->name = fmt::format("{}: mesh {}", path, in_quotes(found->name));
     return std::move(*found);
-}
-
-/// Sets the fields of `recipe` that the recipe file and --set name.
-template <typename Recipe>
-Status read_recipe(const BakeOptions& options, Recipe& recipe) {
-    if (!options.recipe.empty()) {
-        const JsonValue json = LIMN_TRY(load_json(options.recipe));
-        LIMN_TRY(read_struct(json, recipe, {options.recipe, ""}, {}));
-    }
-    for (const Assignment& set : options.assignments) {
-        const Result<JsonValue> json = parse_json(set.value, "--set");
-        const JsonValue value = json ? *json : json_of(std::string_view(set.value));
-        LIMN_TRY(read_struct(json_object({{set.path, {}, value}}), recipe, {"--set", ""}, {}));
-    }
-    return Done{};
 }
 
 std::vector<std::uint8_t> encode_normals(const std::vector<Vec3>& normals) {
@@ -151,9 +137,17 @@ Status bake_furrows(const BakeOptions& options) {
 }
 
 constexpr BakeKind kKinds[] = {
+    {"ao", "ambient occlusion of a height map or a mesh", bake_occlusion_map},
+    {"cone", "relief map with relaxed cones, for marching in few steps", bake_cone_map},
+    {"detail", "normals and occlusion of a detailed mesh for one with few triangles",
+     bake_detail_maps},
+    {"double-depth", "relief map of a mesh with front and back", bake_double_depth_map},
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
+    {"normal", "normal map of a height map or a mesh", bake_normal_map},
+    {"odd", "what each view ray sees of a tile, by position and direction", bake_odd_map},
     {"photometric", "normals and reflectance from photographs, each under one light",
      bake_photometric},
+    {"relief", "normals and depths of a height map or a mesh", bake_relief_map},
     {"strain_model", "wrinkles of captured normal maps, as a function of the strain of a face",
      bake_strain_model},
 };

@@ -12,14 +12,15 @@ namespace limn {
 // Shown by `limn bake photometric shots.json -o face.png`: bump.normal-encoding,
 //     face.photometric-normals
 
-/// `limn bake`: makes maps from a mesh or from photographs.
+/// `limn bake`: makes maps from a mesh, from heights or from photographs.
 struct BakeOptions {
     std::string kind;
-    std::string in;                       ///< .gltf or .glb; .json for photometric and strain_model
-    std::string out;                      ///< NAME.png or NAME.exr; kinds append to NAME
-    std::string recipe;                   ///< JSON file of settings; empty = defaults of the kind
-    std::string mesh;                     ///< name of a mesh in the file; empty = the largest
-    bool gpu = false;                     ///< compute the same maps on the GPU
+    std::string in;      ///< a mesh or heights; .json for photometric and strain_model
+    std::string high;    ///< detail: the mesh with the details
+    std::string out;     ///< NAME.png or NAME.exr; kinds append to NAME
+    std::string recipe;  ///< JSON file of settings; empty = defaults of the kind
+    std::string mesh;    ///< name of a mesh; empty = the largest or all
+    bool gpu = false;    ///< compute the same maps on the GPU
     std::vector<Assignment> assignments;  ///< FIELD=VALUE of the recipe
 };
 

@@ -361,7 +361,7 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
 }
 
 Command add_bake(CLI::App& program, BakeOptions& options) {
-    CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh or from photographs");
+    CLI::App* app = program.add_subcommand("bake", "Make maps from meshes, heights or photographs");
     std::string kinds;
     for (const BakeKind& kind : bake_kinds()) {
         kinds += fmt::format("  {:<12} {}\n", kind.name, kind.doc);
@@ -377,7 +377,9 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         })
         ->type_name("KIND")
         ->required();
-    app->add_option("in", options.in, ".gltf or .glb; .json for photometric and strain_model")
+    app->add_option(
+           "in", options.in,
+           ".gltf, .glb or .obj; or an image of heights; .json for photometric and strain_model")
         ->type_name("IN")
         ->required();
     add_parsed(
@@ -389,13 +391,35 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         ->type_name("FILE")
         ->required();
     app->add_option("--recipe", options.recipe, "settings of the kind")->type_name("FILE.json");
-    app->add_option("--mesh", options.mesh, "name of the mesh; default: the largest of the file")
+    app->add_option(
+           "--mesh", options.mesh,
+           "name of the mesh; default: all of the file, for furrows the largest")
         ->type_name("NAME");
+    app->add_option("--high", options.high, "detail: the mesh with the details")->type_name("FILE");
     app->add_flag("--gpu", options.gpu, "compute the same maps on the GPU");
     add_assignments(*app, options.assignments);
     app->footer(fmt::format(
         "KIND is one of\n{}\n"
         "PATH of --set is a field of the recipe, VALUE is JSON or a bare word.\n"
+        "normal, relief, cone, ao and odd take an image of heights (white is high; PNG with 8 or "
+        "16 "
+        "bits, EXR\n"
+        "...) or a mesh, which is seen through a side of its box (--set face=front), as does "
+        "double-depth.\n"
+        "Their recipe: size (of the map of a mesh), face, depth, repeats, samples, rays, reach, "
+        "order, bits,\n"
+        "levels; that of detail: size, samples, distance, padding, object_space, rays, reach, "
+        "bits.\n"
+        "Relief maps have the normal's x and y in red and green, green up, and the depth in alpha; "
+        "blue is the\n"
+        "normal's z, the cone's ratio or the depth of the back. They are the relief_texture of a "
+        "material:\n"
+        "  \"images\": {{\"wall\": {{\"file\": \"wall.png\", \"srgb\": false}}}},\n"
+        "  \"materials\": {{\"wall\": {{\"detail\": \"relief\", \"relief_texture\": "
+        "{{\"image\": \"wall\"}}}}}}\n"
+        "detail writes NAME_normal, NAME_height and NAME_occlusion of the mesh --high for the "
+        "texture\n"
+        "coordinates of IN, and NAME.glb, which is IN with these maps.\n"
         "furrows writes NAME_height.png, 16 bits gray, white is skin without a furrow, or\n"
         "NAME_height.exr with both fields apart as first.Y and second.Y; and NAME_normal.png, "
         "green up.\n"
@@ -415,6 +439,9 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "wrinkle_surface with the method model.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
+        "  limn bake normal heights.png -o normal.png --set depth=0.02\n"
+        "  limn bake cone model.glb -o cones.png --set face=top --set size=64\n"
+        "  limn bake detail low.obj --high high.obj -o statue.png --set distance=0.05\n"
         "  limn bake photometric shots.json -o face.png\n"
         "  limn bake strain_model poses.json -o wrinkles.exr\n"
         "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
