@@ -6,7 +6,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
-#include "render/light/hatching_pass.h"
+#include "render/light/hatched_view.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"

@@ -2,6 +2,7 @@
 
 #include "ecs/world.h"
 #include "render/fullscreen.h"
+#include "render/light/hatched_view.h"
 #include "render/settings.h"
 #include "render/shaders/fullscreen_gpu.h"
 #include "render/shaders/gbuffer_gpu.h"

@@ -20,9 +20,6 @@ namespace limn {
 // one number per pixel, the lightest tone that has a stroke there; it takes the place of metalness,
 // which Toon does not read.
 
-/// Published in views with hatching: the G-buffer pass stores the strokes.
-struct HatchedView {};
-
 struct HatchingEffect {
     const gpu::Program* program = nullptr;
 

@@ -108,7 +108,7 @@ TEST_CASE_FIXTURE(
         }
         last = std::move(image);
     }
-    CHECK(largest < 0.12f);
+    CHECK(largest < 0.008f);
 }
 
 TEST_CASE_FIXTURE(
