@@ -136,22 +136,6 @@ gpu::FloatImage oracle_image(const oracle::LayeredMaterial& material) {
     return image;
 }
 
-/// Largest difference of any channel, relative to the oracle's brightest.
-double worst_of(const gpu::FloatImage& found, const gpu::FloatImage& expected) {
-    double largest = 0;
-    double brightest = 1e-9;
-    for (int y = 0; y < expected.height; ++y) {
-        for (int x = 0; x < expected.width; ++x) {
-            for (int c = 0; c < 3; ++c) {
-                const double want = expected.at(x, y, c);
-                largest = std::max(largest, std::abs(found.at(x, y, c) - want));
-                brightest = std::max(brightest, want);
-            }
-        }
-    }
-    return largest / brightest;
-}
-
 /// The brightest color of a white surface in a white furnace, by the sum over all directions.
 double furnace_of(oracle::LayeredMaterial material) {
     material.albedo = DVec3(1);
@@ -175,7 +159,7 @@ Status measure_materials(HeadlessRenderer& headless, QualityReport& report) {
         const gpu::FloatImage expected = oracle_image(material);
         report.at_most(
             fmt::format("{}: largest difference, of the brightest", sample.name),
-            worst_of(found, expected), 4e-3 + (half_floats ? 1.0 / 2048 : 0));
+            largest_relative_error(found, expected), 4e-3 + (half_floats ? 1.0 / 2048 : 0));
         report.at_most(
             fmt::format("{}: light returned of a white furnace", sample.name), furnace_of(material),
             1.03);

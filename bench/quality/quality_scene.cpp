@@ -245,4 +245,19 @@ double percent_error(double found, double exact) {
     return 100 * std::abs(found - exact) / exact;
 }
 
+double largest_relative_error(const gpu::FloatImage& found, const gpu::FloatImage& expected) {
+    double largest = 0;
+    double brightest = 1e-9;
+    for (int y = 0; y < expected.height; ++y) {
+        for (int x = 0; x < expected.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const double want = expected.at(x, y, c);
+                largest = std::max(largest, std::abs(found.at(x, y, c) - want));
+                brightest = std::max(brightest, want);
+            }
+        }
+    }
+    return largest / brightest;
+}
+
 }  // namespace limn

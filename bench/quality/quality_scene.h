@@ -64,6 +64,9 @@ inline constexpr Vec3 kCourtTarget = {-0.25f, 0.75f, -0.6f};
 /// A view from `eye` toward `target`.
 [[nodiscard]] RenderView
 quality_view(const Vec3& eye, const Vec3& target, int width, int height, float fov_y);
+/// Largest difference of any of R, G and B, relative to the brightest of `expected`.
+[[nodiscard]] double
+largest_relative_error(const gpu::FloatImage& found, const gpu::FloatImage& expected);
 /// The ray through the center of a pixel, rows from the top, one meter long along the view axis.
 [[nodiscard]] glm::dvec3 pixel_ray(const RenderView& view, double x, double y);
 [[nodiscard]] glm::dvec3 eye_of(const RenderView& view);

@@ -119,22 +119,6 @@ gpu::FloatImage oracle_image(const Material& material) {
     return image;
 }
 
-/// Largest difference of any channel, relative to the oracle's brightest.
-double largest_relative_error(const gpu::FloatImage& found, const gpu::FloatImage& expected) {
-    double largest = 0;
-    double brightest = 1e-9;
-    for (int y = 0; y < expected.height; ++y) {
-        for (int x = 0; x < expected.width; ++x) {
-            for (int c = 0; c < 3; ++c) {
-                const double want = expected.at(x, y, c);
-                largest = std::max(largest, std::abs(found.at(x, y, c) - want));
-                brightest = std::max(brightest, want);
-            }
-        }
-    }
-    return largest / brightest;
-}
-
 Status measure_surfaces(HeadlessRenderer& headless, QualityReport& report) {
     const RenderView view = quality_view({0, 0, 1}, {0, 0, 0}, kSide, kSide, radians(90.0f));
     const bool half_floats = headless.device->caps().profile == gpu::Profile::Gpu;

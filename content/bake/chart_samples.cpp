@@ -23,7 +23,7 @@ int clamped_cell(double x, int count) {
 
 Charts::Charts(
     std::span<const Vec2> uvs, std::span<const std::uint32_t> indices, int columns, int rows)
-    : columns_(columns), rows_(rows) {
+    : columns_(columns) {
     LIMN_CHECK(columns > 0 && rows > 0);
     bins_.resize(static_cast<std::size_t>((rows - 1) / kBinRows + 1));
     constexpr double kMinArea = 1e-9;  // twice the area of a triangle, in samples

@@ -45,7 +45,6 @@ class Charts {
     std::vector<Triangle> triangles_;
     std::vector<std::vector<std::uint32_t>> bins_;  ///< triangles at each kBinRows rows
     int columns_ = 0;
-    int rows_ = 0;
     std::size_t degenerate_ = 0;
     std::size_t outside_ = 0;
 };

@@ -40,9 +40,9 @@ class ConeBaker {
     }
 
     /// Visits blocks of texels in growing squares around (x, y) until none can matter.
-    [[nodiscard]] float ratio(int x, int y) const {
+    [[nodiscard]] float ratio(int x, int y, float widest) const {
         const float depth = depth_at(x, y);
-        float best = 1;
+        float best = widest;
         const int bx = x / kConeBlock;
         const int by = y / kConeBlock;
         const float texel =
@@ -172,12 +172,13 @@ class ConeBaker {
 
 }  // namespace
 
-BakedMap make_cone_map(const BakedMap& relief, bool repeats, const RowProgress& progress) {
+BakedMap
+make_cone_map(const BakedMap& relief, bool repeats, const RowProgress& progress, float widest) {
     const ConeBaker baker(relief, repeats);
     BakedMap cones = relief;
     bake_rows(relief.height, progress, [&](int y) {
         for (int x = 0; x < relief.width; ++x) {
-            cones.texels[cones.at(x, y)].z = baker.ratio(x, y);
+            cones.texels[cones.at(x, y)].z = baker.ratio(x, y, widest);
         }
     });
     return cones;

@@ -16,8 +16,8 @@ namespace limn {
 // Texels and blocks of texels that cannot narrow the cone further are skipped.
 
 /// The map, of any layout with depth in A, in the layout Cone. `repeats`: beyond its edges, else
-/// there is nothing.
-[[nodiscard]] BakedMap
-make_cone_map(const BakedMap& relief, bool repeats, const RowProgress& progress = {});
+/// there is nothing. `widest`: the largest ratio; the time grows with its square.
+[[nodiscard]] BakedMap make_cone_map(
+    const BakedMap& relief, bool repeats, const RowProgress& progress = {}, float widest = 1);
 
 }  // namespace limn

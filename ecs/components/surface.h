@@ -169,7 +169,6 @@ enum class SurfaceDetail : std::uint8_t {
     Cone,          ///< relaxed cone stepping (Policarpo and Oliveira 2007)
     DoubleDepth,   ///< as Relief, between a front and a back surface; empty texels are holes
     Silhouette,    ///< as Relief on the quadric of the mesh: its outline is that of the relief
-    Displaced,     ///< the mesh is tessellated and displaced
 };
 
 struct Material {
@@ -220,7 +219,6 @@ struct Material {
     float relief_depth = 0.05f;
     std::int32_t relief_steps = 24;
     std::int32_t relief_refinements = 6;
-    float relief_shadow = 0.0f;
     TextureSlot base_color_texture = {};
     TextureSlot metal_rough_texture = {};
     TextureSlot normal_texture = {};
@@ -298,7 +296,10 @@ LIMN_FIELDS(Material) {
         "refracted, in the base color, and blurred by the roughness",
         "", 0, 1);
     LIMN_FIELD(
-        refractive_index, "of the medium, with transmission; glass 1.5, water 1.33", "", 1, 3);
+        refractive_index,
+        "of a dielectric: how much it reflects, and how it refracts with transmission; glass 1.5, "
+        "water 1.33",
+        "", 1, 3);
     LIMN_FIELD(
         thickness,
         "with transmission: of the medium behind the surface, scaled with the mesh. The bent ray "
@@ -336,20 +337,16 @@ LIMN_FIELDS(Material) {
         "with transmission and thickness: 20 / Abbe number, the spread of colors in the medium", "",
         0, 20);
     LIMN_FIELD(
-        ramp, "toon: colors of the diffuse light from dark to lit, at equal distances, at most 16");
+        ramp,
+        .doc = "toon: colors of the diffuse light from dark to lit, at equal distances, at most 16",
+        .min = 0, .color = true);
     LIMN_FIELD(
         detail, .doc = "how the surface shows detail that its mesh does not have",
-        .values =
-            "normal flat bump object_normal parallax occlusion relief cone double_depth silhouette "
-            "displaced");
+        .values = "normal flat bump object_normal parallax occlusion relief cone double_depth "
+                  "silhouette");
     LIMN_FIELD(relief_depth, "depth of the relief below the mesh where its map is 1", "m", 0, 1000);
     LIMN_FIELD(relief_steps, "steps of the linear search along the view ray", "", 4, 256);
     LIMN_FIELD(relief_refinements, "steps of the binary search after it", "", 0, 12);
-    LIMN_FIELD(
-        relief_shadow,
-        "how dark the relief shades itself from the first directional light; shadow maps do so, "
-        "too, but coarsely",
-        "", 0, 1);
     LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
     LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");

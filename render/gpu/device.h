@@ -127,7 +127,7 @@ class Device {
     friend void
     blit_to_window(Device& device, const Texture& texture, int width, int height, int columns);
 
-    static constexpr std::size_t kUnits = 32;
+    static constexpr std::size_t kUnits = 48;
     struct BufferBinding {
         GLuint buffer = 0;
         std::size_t offset = 0;

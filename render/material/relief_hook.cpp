@@ -12,26 +12,26 @@ namespace {
 constexpr HookPoint kReliefPoints[] = {HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal};
 
 constexpr HookDefinition kReliefDefinitions[] = {
-    {kReliefBump, "RELIEF_BUMP"},     {kReliefParallax, "RELIEF_PARALLAX"},
-    {kReliefLinear, "RELIEF_LINEAR"}, {kReliefCones, "RELIEF_CONES"},
-    {kReliefClosed, "RELIEF_CLOSED"}, {kReliefCurved, "RELIEF_CURVED"},
-    {kReliefShifted, "SHIFTED_UV"},   {kReliefOffMesh, "OFF_MESH"},
+    {kReliefBump, "RELIEF_BUMP"},      {kReliefParallax, "RELIEF_PARALLAX"},
+    {kReliefLinear, "RELIEF_LINEAR"},  {kReliefCones, "RELIEF_CONES"},
+    {kReliefClosed, "RELIEF_CLOSED"},  {kReliefCurved, "RELIEF_CURVED"},
+    {kReliefShifted, "SHIFTED_UV"},    {kReliefOffMesh, "OFF_MESH"},
+    {kReliefObject, "OBJECT_NORMALS"},
 };
 
-/// In the order of SurfaceDetail. Displaced is drawn as Relief where nothing tessellates.
+/// In the order of SurfaceDetail.
 constexpr std::uint16_t kBelow = kReliefShifted | kReliefOffMesh;
 constexpr std::uint16_t kReliefOfDetail[] = {
     0,
     kReliefFlat,
     kReliefBump,
-    0,
+    kReliefObject,
     kReliefParallax | kReliefShifted,
     kReliefLinear | kBelow,
     kBelow,
     kReliefCones | kBelow,
     kReliefClosed | kBelow,
     kReliefCurved | kBelow,
-    kBelow,
 };
 
 std::uint16_t relief_of_material(const Material& material) {
@@ -41,7 +41,12 @@ std::uint16_t relief_of_material(const Material& material) {
 /// Leaves out the maps that the surface does not need, and what needs a map that it does not have.
 void add_relief(SurfaceFeatures& features, std::uint16_t) {
     const std::uint16_t bits = features.hooks.of(kReliefHook);
-    const bool has_relief = bits > kReliefFlat && features.maps.has(layout::kReliefSlot);
+    if (bits == kReliefObject && features.maps.has(layout::kNormalSlot)) {
+        features.maps.remove(layout::kReliefSlot);
+        return;
+    }
+    const bool has_relief =
+        bits > kReliefFlat && bits != kReliefObject && features.maps.has(layout::kReliefSlot);
     if (has_relief || bits == kReliefFlat) {
         features.maps.remove(layout::kNormalSlot);
     }

@@ -20,6 +20,7 @@ enum ReliefFeature : std::uint16_t {
     kReliefCurved = 1u << 6,
     kReliefShifted = 1u << 7,  // maps are read at shifted texture coordinates
     kReliefOffMesh = 1u << 8,  // fragments lie below the mesh
+    kReliefObject = 1u << 9,   // the normal map is in mesh space
 };
 
 extern const SurfaceHook kReliefHook;

@@ -15,7 +15,7 @@ struct LayersBlock {
 
 // Bindings.
 const uint kGbufferLayersUnit = 14u;
-const uint kSheenAlbedoUnit = 24u;
+const uint kSheenAlbedoUnit = 33u;
 
 #ifdef __cplusplus
 }  // namespace limn::layout

@@ -7,11 +7,11 @@ namespace limn::layout {
 #endif
 
 struct ReliefBlock {
-    vec4 search;  // depth of the relief [m], steps, refinements, darkness of its own shadow
+    vec4 search;  // depth of the relief [m], steps, refinements
 };
 
 // Bindings.
-const uint kCurvaturesUnit = 30u;
+const uint kCurvaturesUnit = 32u;
 
 #ifdef __cplusplus
 static_assert(sizeof(ReliefBlock) == 16);

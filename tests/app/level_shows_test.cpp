@@ -14,8 +14,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -93,17 +93,18 @@ TEST_CASE("shows: every technique of a level has a row in TECHNIQUES.md that nam
     const Result<std::vector<FoundShow>> shows = list_shows();
     REQUIRE(shows.ok());
     std::ifstream page(std::string(LIMN_SOURCE_DIR) + "/TECHNIQUES.md");
-    std::set<std::string> rows;
+    std::map<std::string, std::string> shown_by;
     for (std::string line; std::getline(page, line);) {
         const std::size_t end = line.find(" |", 2);
         const std::size_t last = line.rfind('|', line.size() - 2);
         if (line.starts_with("| ") && end != std::string::npos && last != std::string::npos) {
-            rows.insert(line.substr(2, end - 2) + line.substr(last));
+            shown_by[line.substr(2, end - 2)] = line.substr(last);
         }
     }
     for (const FoundShow& found : *shows) {
         CAPTURE(found.show.technique);
-        CHECK(rows.contains(fmt::format("{}| `{}` |", found.show.technique, found.level.name)));
+        const std::string level = fmt::format("`{}`", found.level.name);
+        CHECK(shown_by[found.show.technique].find(level) != std::string::npos);
     }
 }
 

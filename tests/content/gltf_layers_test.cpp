@@ -1,5 +1,6 @@
 #include "content/load/gltf/gltf_write.h"
 #include "tests/content/gltf_spoiled.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <cstddef>
@@ -176,8 +177,8 @@ TEST_CASE("gltf layers: the index 0 of an opaque material stands for full reflec
     REQUIRE(scene.ok());
     const Material& m = scene->materials[0];
     const float head_on = square((m.refractive_index - 1) / (m.refractive_index + 1));
-    CHECK(head_on * m.specular_tint.x == doctest::Approx(0.5));
-    CHECK(head_on * m.specular_tint.z == doctest::Approx(1));
+    CHECK(head_on * m.specular_tint.x == near(0.5));
+    CHECK(head_on * m.specular_tint.z == near(1));
 }
 
 }  // namespace limn::gltf_layers_test

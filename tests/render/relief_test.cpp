@@ -306,6 +306,34 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ReliefScene,
+    "object normals: they are those of the map, turned with the mesh, whatever its tangents are"
+        * technique("bump.object-space-map")) {
+    const ImageId tilted =
+        add(ImageData{.name = "tilted", .width = 1, .height = 1, .pixels = {230, 128, 204, 255}});
+    const Vec3 decoded = glm::normalize(Vec3(230, 128, 204) * (2.0f / 255) - 1.0f);
+    Material stone = painted();
+    stone.detail = SurfaceDetail::ObjectNormal;
+    stone.normal_texture = {.image = tilted};
+    const MaterialId material = add(stone);
+    MeshData other = make_square();
+    for (Vec4& tangent : other.tangents) {
+        tangent = {0.6f, 0.8f, 0, -1};
+    }
+    const MeshId meshes[] = {add(make_square()), add(std::move(other))};
+    for (const float turn : {0.0f, 0.5f, -0.8f}) {
+        const Quat rotation = glm::angleAxis(turn, glm::normalize(Vec3(0.2f, 1, 0.4f)));
+        for (const MeshId mesh : meshes) {
+            world.clear();
+            place(mesh, material, affine_from({0, 0, 0}, rotation, {1, 1, 1}));
+            const gpu::FloatImage normals = aov(look({0, 0, 1.5f}, {0, 0, 0}, 16, 16), "normal");
+            const Vec3 found = glm::normalize(rgb_at(normals, 8, 8));
+            CHECK(glm::dot(found, rotation * decoded) >= 0.9999f);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ReliefScene,
     "relief: far away a pyramid is as deep as the mean of its map" * technique("relief.filter")) {
     Material stone = carved(SurfaceDetail::Relief, add(pyramid_map()));
     stone.relief_texture.scale = {64, 64};

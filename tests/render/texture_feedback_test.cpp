@@ -59,7 +59,7 @@ Cells glider(int x, int y) {
     return cells;
 }
 
-/// A square that fills the image with the state, a texel a pixel.
+/// A square that fills the image with the state, one texel per pixel.
 struct FeedbackScene : Scene {
     Entity painter;
 

@@ -45,7 +45,7 @@ Vec4 second_color(int x, int y) {
     return {0.6f, 0.2f, (x + y) % 2 == 0 ? 0.8f : 0.1f, x < 5 ? 0.0f : x < 10 ? 0.5f : 1.0f};
 }
 
-/// A square that fills the image with the stack, a texel a pixel.
+/// A square that fills the image with the stack, one texel per pixel.
 struct LayerScene : Scene {
     ImageId first = add(painted(first_color));
     ImageId second = add(painted(second_color));

@@ -59,7 +59,6 @@ std::vector<SurfaceBenchPoint> surface_points() {
         {.name = "cone stepping", .detail = SurfaceDetail::Cone},
         {.name = "parallax occlusion", .detail = SurfaceDetail::Occlusion},
         {.name = "relief", .detail = SurfaceDetail::Relief},
-        {.name = "double depth", .detail = SurfaceDetail::DoubleDepth},
         {.name = "silhouette", .detail = SurfaceDetail::Silhouette}};
 }
 

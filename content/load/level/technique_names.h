@@ -46,6 +46,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"bump.nm-from-height", "normal map from a height field"},
     {"bump.normal-encoding", "normal range compression, normal decoding"},
     {"bump.normal-map", "normal mapping, bump mapping"},
+    {"bump.object-space-map", "object-space normal map"},
     {"bump.tangent-bezier", "tangent frame of a Bezier patch"},
     {"bump.tangent-space", "tangent space, TBN matrix"},
     {"bump.tangent-triangle", "tangent frame of a triangle"},

@@ -1,5 +1,6 @@
 #include "content/make/patterns/pattern_maps.h"
 
+#include "content/bake/cone_map.h"
 #include "content/bake/wrinkle_map.h"
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
@@ -12,6 +13,8 @@
 namespace limn {
 
 namespace {
+
+constexpr float kWidestCone = 0.125f;  // of relief maps: wider ones take minutes
 
 std::uint8_t to_byte(float x) {
     return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
@@ -118,11 +121,21 @@ PatternMaps make_relief_maps(int size, float relief, const Texels& texel) {
     write_normals(maps.normal, heights);
     maps.relief = maps.normal;
     const float range = relief * static_cast<float>(size);
+    BakedMap depths = make_baked_map(size, size);
+    bool is_solid = true;
+    for (std::size_t pixel = 0; pixel < heights.size(); ++pixel) {
+        depths.texels[pixel].w = 1.0f - heights[pixel] / range;
+        is_solid = is_solid && maps.base_color.pixels[4 * pixel + 3] >= 128;
+    }
+    if (is_solid) {
+        depths = make_cone_map(depths, true, {}, kWidestCone);
+    }
     for_pixels(size, [&](int, int, std::size_t pixel) {
         std::uint8_t* const at = &maps.relief.pixels[4 * pixel];
         const bool solid = maps.base_color.pixels[4 * pixel + 3] >= 128;
-        at[2] = solid ? 255 : 0;
-        at[3] = solid ? to_byte(1.0f - heights[pixel] / range) : 255;
+        at[2] =
+            is_solid ? to_byte(depths.texels[pixel].z) : static_cast<std::uint8_t>(solid ? 255 : 0);
+        at[3] = solid ? to_byte(depths.texels[pixel].w) : 255;
     });
     return maps;
 }

@@ -28,8 +28,8 @@ struct PatternMaps {
     /// and behind, with their opacity; see ParticleLook::negative_light.
     ImageData positive_light, negative_light;
     /// For stone with relief, else empty: normals, and depth in alpha, of the heights between 0 and
-    /// 1 (Material::relief_texture). Blue is the back: the bottom, or in front of the surface where
-    /// the opacity is 0.
+    /// 1 (Material::relief_texture). Blue: relaxed cones (cone_map.h); or, where some texel has no
+    /// opacity, the back: the bottom, or in front of the surface of such texels.
     ImageData relief;
 };
 

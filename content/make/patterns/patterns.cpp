@@ -407,6 +407,8 @@ std::span<const PatternKind> pattern_kinds() {
             "a flipbook of a burst of fire that turns to soot, in color, with its motion",
             PatternKindMaps::Motion),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
+        pattern_kind<FlutesPattern, make_flutes>(
+            "flutes", "a fluted ball, with normals in the space of a sphere"),
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),

@@ -125,4 +125,36 @@ PatternMaps make_rosettes(const RosettesPattern& pattern) {
     });
 }
 
+PatternMaps make_flutes(const FlutesPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int size = pattern.image.size;
+    PatternMaps maps = make_pattern_maps(size, [&](const Vec2& uv) {
+        const float grain = fbm(uv, 48, seed + 10, 4, 0.7f);
+        PatternTexel t;
+        t.color = pattern.color * (1.0f + 0.3f * fbm(uv, 6, seed + 20) + 0.2f * grain);
+        t.roughness = 0.8f + 0.1f * grain;
+        return t;
+    });
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            // Longitude and latitude, as make_sphere() has them: the seam is at -z, the top at +y.
+            const Vec2 uv = (Vec2(x, y) + 0.5f) / static_cast<float>(size);
+            const float longitude = 2 * kPi * (uv.x - 0.5f);
+            const float latitude = kPi * uv.y;
+            const Vec3 east = {std::cos(longitude), 0, -std::sin(longitude)};
+            const Vec3 out = {
+                std::sin(latitude) * std::sin(longitude), std::cos(latitude),
+                std::sin(latitude) * std::cos(longitude)};
+            const float slope = pattern.depth * std::sin(latitude)
+                                * std::sin(static_cast<float>(pattern.flutes) * longitude);
+            const Vec3 normal = 0.5f + 0.5f * glm::normalize(out + slope * east);
+            for (int k = 0; k < 3; ++k) {
+                maps.normal.pixels[static_cast<std::size_t>(4 * (y * size + x) + k)] =
+                    static_cast<std::uint8_t>(std::lround(255 * normal[k]));
+            }
+        }
+    }
+    return maps;
+}
+
 }  // namespace limn

@@ -55,7 +55,24 @@ LIMN_FIELDS(RosettesPattern) {
     LIMN_FIELD(color, .doc = "of the stone", .min = 0, .max = 1, .color = true);
 }
 
+/// A fluted ball, whose normal map is in the space of the mesh `sphere`: for `detail`
+/// object_normal.
+struct FlutesPattern {
+    PatternSize image;
+    int flutes = 14;
+    float depth = 0.5f;
+    Vec3 color = {0.50f, 0.45f, 0.36f};
+};
+
+LIMN_FIELDS(FlutesPattern) {
+    visit_fields(self.image, visit);
+    LIMN_FIELD(flutes, "around the axis", "", 0, 256);
+    LIMN_FIELD(depth, "slope of their sides", "", 0, 4);
+    LIMN_FIELD(color, .doc = "of the stone", .min = 0, .max = 1, .color = true);
+}
+
 [[nodiscard]] PatternMaps make_blocks(const BlocksPattern& pattern);
 [[nodiscard]] PatternMaps make_rosettes(const RosettesPattern& pattern);
+[[nodiscard]] PatternMaps make_flutes(const FlutesPattern& pattern);
 
 }  // namespace limn

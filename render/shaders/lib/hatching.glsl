@@ -9,7 +9,7 @@
 const float kFinestLines = 4096.0;   // per unit of texture coordinates
 const float kStrokeSpacing = 4.0;    // in the darkest tone [px of an image 720 lines high]
 const float kStrokeWidth = 1.2;      // [px of the same]
-const float kLeastScale = 0.6;       // [px / px of the same], so that strokes of small images are not mere noise
+const float kMinScale = 0.6;         // lower limit of image height / 720, which keeps strokes of small images apart
 const float kStrokeLength = 24.0;    // per unit of texture coordinates, between noise values
 
 float hatching_random(ivec2 cell, uint seed) {
@@ -52,7 +52,7 @@ float stroke_family(float across, float along, float scale, uint seed) {
 
 // Strokes of a surface: along u, slanting across them where it is darker, and along v in the deepest shade.
 float hatching_tone(vec2 uv) {
-    float scale = max(view.size.y / 720.0, kLeastScale);
+    float scale = max(view.size.y / 720.0, kMinScale);
     vec2 wander = vec2(hatching_noise(uv * 5.0, 3u), hatching_noise(uv * 5.0, 4u)) - 0.5;  // lines drawn by hand
     uv += 0.006 * wander;
     float along_u = stroke_family(uv.y, uv.x, scale, 11u);

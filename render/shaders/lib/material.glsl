@@ -24,7 +24,7 @@
 // Source of skin.detail: Barré-Brisebois and Hill 2012
 
 #include "lib/gbuffer.glsl"
-#ifdef HATCHED
+#if defined(HATCHED) && !defined(LIT_AT_VERTICES)
 #include "lib/hatching.glsl"
 #endif
 #include "lib/interpolation.glsl"

@@ -6,11 +6,17 @@
 //   RELIEF_CLOSED    the relief has a back surface; texels without a surface are holes
 //   RELIEF_CURVED    the ray bends with the mesh's quadric and may leave the relief: a hole
 //   RELIEF_BUMP      normals from differences of depth, and nothing else
-// Techniques: bump.height-field, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
+//   OBJECT_NORMALS   without relief: the normal map holds normals in mesh space
+// Techniques: bump.height-field, bump.object-space-map, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
 //     relief.parallax, relief.permutations, relief.planar, relief.silhouette, relief.tangent, shadow.relief-cast,
 //     shadow.relief-matrix, shadow.relief-receive
 
 #include "lib/view.glsl"
+
+#if defined(OBJECT_NORMALS) && defined(NORMAL_MAP) && !defined(LIT_AT_VERTICES)
+#define MESH_SPACE_NORMALS
+layout(location = 12) flat in mat3 world_from_normal;
+#endif
 
 #if defined(RELIEF_MAP) && !defined(LIT_AT_VERTICES)
 #define RELIEF
@@ -131,6 +137,11 @@ void relief_uv(inout vec4 uv) {
 }
 
 void relief_normal(inout vec3 normal) {
+#ifdef MESH_SPACE_NORMALS
+    // In the frame of the mesh, whatever its tangents are.
+    vec3 normal_wanted = normalize(world_from_normal * (MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz * 2.0 - 1.0));
+    normal = inverse(mat3(tangent_ws.xyz, cross(normal_ws, tangent_ws.xyz) * tangent_ws.w, normal_ws)) * normal_wanted;
+#endif
 #ifdef RELIEF
 #ifdef RELIEF_BUMP
     // Slopes of the height over a texel, in meters of the mesh to either side (Blinn 1978).

@@ -1,5 +1,6 @@
 // What lib/relief_surface.glsl needs of vertices: a hook of mesh.vert. Definition:
 //   RELIEF_MAP  the surface has relief
+//   OBJECT_NORMALS  its normal map is in mesh space
 
 #ifdef RELIEF_MAP
 #include "relief_gpu.h"
@@ -10,7 +11,16 @@ layout(location = 11) out vec2 relief_curvature;  // of the mesh's quadric along
 #endif
 #endif
 
+#ifdef OBJECT_NORMALS
+layout(location = 12) flat out mat3 world_from_normal;  // not unit
+#endif
+
 void relief_vertex(inout vec3 tangent, vec3 normal) {
+#ifdef OBJECT_NORMALS
+    world_from_normal = vertex_side() * transpose(mat3(
+        cross(world_row1.xyz, world_row2.xyz), cross(world_row2.xyz, world_row0.xyz),
+        cross(world_row0.xyz, world_row1.xyz)));
+#endif
 #ifdef RELIEF_MAP
     float volume = abs(dot(world_row0.xyz, cross(world_row1.xyz, world_row2.xyz)));
     relief_position = vec4(vertex_ws() - view.camera_ws.xyz, pow(volume, 1.0 / 3.0));
