@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -309,7 +310,9 @@ void Renderer::update_assets() {
     }
     frame_.assets_identity = assets_;
     frame_.assets_replaced = replaced;
-    materials_.update(assets, replaced);
+    const auto* rendering = frame_.world->find_resource<Rendering>();
+    materials_.update(
+        assets, replaced, rendering != nullptr ? rendering->surface_detail : DetailLimit::Full);
     meshes_.update(assets.meshes, materials_.curves());
 }
 

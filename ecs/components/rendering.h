@@ -95,6 +95,19 @@ enum class Antialiasing : std::uint8_t {
     Temporal,  ///< accumulates reprojected previous frames (TAA)
 };
 
+/// The dearest way in which surfaces show detail; materials that want more fall to it
+/// (relief.selection, the ladder of SurfaceDetail).
+enum class DetailLimit : std::uint8_t {
+    Full,
+    Relief,  ///< no outlines and no holes of reliefs, no displacement
+    Occlusion,
+    Parallax,
+    Normal,
+    Flat,
+};
+inline constexpr int kDetailLimits = 6;
+inline constexpr const char* kDetailLimitNames = "full relief occlusion parallax normal flat";
+
 /// Resource: rendering settings. Absent: the defaults.
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
@@ -104,6 +117,7 @@ struct Rendering {
     bool blinn_diffuse = false;
     bool screen_interpolation = false;
     HardwareDefects hardware = {};
+    DetailLimit surface_detail = DetailLimit::Full;
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
     float particle_share = 1;      ///< of those that the GPU moves, see below
@@ -136,6 +150,11 @@ LIMN_FIELDS(Rendering) {
         "forward shading interpolates on the screen, without the perspective divide, as hardware "
         "and forward differences once did; colors and textures swim where triangles lean away");
     LIMN_FIELD(hardware, "defects of hw_quadratic and hw_blinn");
+    LIMN_FIELD(
+        surface_detail,
+        .doc = "the dearest way in which surfaces show detail: materials whose `detail` is dearer "
+               "fall to it",
+        .values = kDetailLimitNames);
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

@@ -169,6 +169,30 @@ enum class SurfaceDetail : std::uint8_t {
     Cone,          ///< relaxed cone stepping (Policarpo and Oliveira 2007)
     DoubleDepth,   ///< as Relief, between a front and a back surface; empty texels are holes
     Silhouette,    ///< as Relief on the quadric of the mesh: its outline is that of the relief
+    Odd,           ///< one lookup in a baked map of positions and view directions (odd.shade)
+    Displaced,     ///< the mesh is tessellated, its vertices are displaced (tex.displacement)
+};
+
+/// How relief shadows itself.
+enum class ReliefShadow : std::uint8_t {
+    Map,   ///< in shadow maps of every light, which search the relief again
+    Ray,   ///< by a second ray toward each of the level's two key lights: exact at every pixel
+    None,  ///< not at all
+};
+
+/// What coarser mip levels of normal maps keep of the bumps that they average (bump.mipmap).
+enum class NormalMips : std::uint8_t {
+    Plain,    ///< their mean direction: distant highlights are too small and bright
+    Toksvig,  ///< also how much they differ, as roughness alike in all directions (Toksvig 2005)
+    Lean,     ///< also their covariance, as roughness along and across (Olano and Baker 2010)
+};
+
+/// Light on bumps that face it where the mesh itself faces away (bump.self-shadow).
+enum class BumpShadow : std::uint8_t {
+    None,    ///< lit
+    Gate,    ///< unlit, with a hard border
+    Smooth,  ///< times the cosine to the normal of the mesh: darker everywhere
+    Ramp,    ///< times 8 of that cosine, at most 1
 };
 
 struct Material {
@@ -219,6 +243,10 @@ struct Material {
     float relief_depth = 0.05f;
     std::int32_t relief_steps = 24;
     std::int32_t relief_refinements = 6;
+    ReliefShadow relief_shadow = ReliefShadow::Map;
+    float tessellation = 6.0f;
+    NormalMips normal_mips = NormalMips::Plain;
+    BumpShadow bump_shadow = BumpShadow::None;
     TextureSlot base_color_texture = {};
     TextureSlot metal_rough_texture = {};
     TextureSlot normal_texture = {};
@@ -343,10 +371,23 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(
         detail, .doc = "how the surface shows detail that its mesh does not have",
         .values = "normal flat bump object_normal parallax occlusion relief cone double_depth "
-                  "silhouette");
+                  "silhouette odd displaced");
     LIMN_FIELD(relief_depth, "depth of the relief below the mesh where its map is 1", "m", 0, 1000);
     LIMN_FIELD(relief_steps, "steps of the linear search along the view ray", "", 4, 256);
     LIMN_FIELD(relief_refinements, "steps of the binary search after it", "", 0, 12);
+    LIMN_FIELD(
+        relief_shadow, .doc = "how relief shadows itself: in shadow maps, by a second ray, or not",
+        .values = "map ray none");
+    LIMN_FIELD(tessellation, "displaced: length of an edge on screen", "px", 1, 100);
+    LIMN_FIELD(
+        normal_mips,
+        .doc = "what coarser mip levels of the normal map keep of its bumps: their mean direction, "
+               "or also roughness",
+        .values = "plain toksvig lean");
+    LIMN_FIELD(
+        bump_shadow,
+        .doc = "light on bumps that face it where the mesh faces away: all, none, or less",
+        .values = "none gate smooth ramp");
     LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
     LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");

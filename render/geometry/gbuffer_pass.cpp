@@ -7,9 +7,11 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/hatched_view.h"
+#include "render/light/light_pass.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
+#include "render/shaders/light_gpu.h"
 #include "render/shadow/volume_list.h"
 #include "render/view_block.h"
 
@@ -121,6 +123,10 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             writes.push_back(discarded(view.gbuffer.layers));
         }
     }
+    if (!forward && frame.materials->key_shadows()) {
+        view.gbuffer.key_light = create("gbuffer.key_light", GL_RG8);
+        writes.push_back(discarded(view.gbuffer.key_light));
+    }
     writes.push_back(cleared(view.gbuffer.depth));
     graph.add_pass(
         "gbuffer", mesh_reads(graph, frame), writes, [this, &view](PassContext& context) {
@@ -129,8 +135,12 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             variant.add_if(clipped, "CLIPPED");
             variant.add_if(view.gbuffer.material.valid(), "MATERIAL_RECORDS");
             variant.add_if(view.gbuffer.layers.valid(), "LAYER_TARGETS");
+            variant.add_if(view.gbuffer.key_light.valid(), "KEY_SHADOWS");
             variant.add_if(view.data.find<HatchedView>() != nullptr, "HATCHED");
             bind_view(context, view);
+            if (view.gbuffer.key_light.valid()) {
+                view.data.get<LightRecords>().records.bind(context.device(), layout::kLightsUnit);
+            }
             draw_runs(
                 context, view, view.data.get<InstanceList>().opaque, programs,
                 {.variant = &variant,

@@ -185,6 +185,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(!lights.ranges.empty(), "LOCAL_LIGHTS");
     add_shading_models(variant, frame.materials->shading_models());
     add_layers(variant, frame.materials->layers());
+    variant.add_if(frame.materials->key_shadows(), "KEY_SHADOWS");
     return true;
 }
 

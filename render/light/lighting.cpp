@@ -26,6 +26,9 @@ std::vector<Use> surface_reads(const ViewData& view, Use depth) {
     if (view.gbuffer.material.valid()) {
         reads.push_back(sampled(view.gbuffer.material, layout::kGbufferMaterialUnit));
     }
+    if (view.gbuffer.key_light.valid()) {
+        reads.push_back(sampled(view.gbuffer.key_light, layout::kGbufferKeyLightUnit));
+    }
     if (view.gbuffer.layers.valid()) {
         reads.push_back(sampled(view.gbuffer.layers, layout::kGbufferLayersUnit));
     }

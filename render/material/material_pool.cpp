@@ -2,7 +2,9 @@
 
 #include "ecs/base/log.h"
 #include "render/gpu/device.h"
+#include "render/material/detail_limit.h"
 #include "render/material/material_blocks.h"
+#include "render/material/relief_hook.h"
 #include "render/material/skin_tone.h"
 #include "render/shaders/material_maps_gpu.h"
 
@@ -50,7 +52,7 @@ MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
               : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
       images_(device), record_texture_("materials", GL_RGBA32F) {}
 
-void MaterialPool::update(const Assets& assets, bool fresh) {
+void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
     if (fresh) {
         images_.clear();
         material_count_ = 0;
@@ -58,7 +60,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     }
     const bool more_images = images_.size() < assets.images.size();
     images_.update(assets.images);
-    if (!fresh && !more_images && material_version_ == assets.material_version
+    if (!fresh && !more_images && limit_ == limit && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {
         return;
     }
@@ -74,14 +76,23 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     layers_ = 0;
     diffuses_ = false;
     curves_ = false;
+    key_shadows_ = false;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
     missing.base_color = {1, 0, 1, 1};
     add_material(missing);
     for (const Material& material : assets.materials) {
-        add_material(material);
+        if (const SurfaceDetail drawn = limited_detail(material.detail, limit);
+            drawn != material.detail) {
+            Material fallen = material;
+            fallen.detail = drawn;
+            add_material(fallen);
+        } else {
+            add_material(material);
+        }
     }
+    limit_ = limit;
     material_count_ = assets.materials.size();
     material_version_ = assets.material_version;
     upload_records();
@@ -162,6 +173,9 @@ void MaterialPool::add_material(const Material& material) {
         batches_.push_back(batch);
     }
     records_.push_back(record);
+    key_shadows_ =
+        key_shadows_
+        || (material.relief_shadow == ReliefShadow::Ray && depth_below_mesh(material) > 0);
     curves_ = curves_ || material.detail == SurfaceDetail::Silhouette;
     const std::uint32_t model = stored_number(layers != 0 ? kLayeredModel : material.shading);
     models_.push_back(static_cast<std::uint8_t>(model));

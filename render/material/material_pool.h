@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/buffer_texture.h"
@@ -41,9 +42,10 @@ class MaterialPool {
     MaterialPool(gpu::Device& device, float anisotropy);
 
     /// Uploads changes of `assets`: new images, and all materials if any were added or their
-    /// version changed. `fresh`: the assets were replaced since the last call. A map that would
-    /// need one texture array more than a material has units is left out, with an error.
-    void update(const Assets& assets, bool fresh);
+    /// version changed. `fresh`: the assets were replaced since the last call. Materials with dearer
+    /// surface detail than `limit` fall to it. A map that would need one texture array more than a
+    /// material has units is left out, with an error.
+    void update(const Assets& assets, bool fresh, DetailLimit limit = DetailLimit::Full);
 
     /// Record index of a material; 0 for none, 1 for an unknown one.
     [[nodiscard]] std::uint32_t record_of(MaterialId id) const {
@@ -62,6 +64,9 @@ class MaterialPool {
     [[nodiscard]] MaterialLayers layers() const { return layers_; }
     /// Whether some material has subsurface scattering (subsurface_pass.h).
     [[nodiscard]] bool diffuses() const { return diffuses_; }
+
+    /// Whether some relief is shadowed by rays toward the key lights (ReliefShadow::Ray).
+    [[nodiscard]] bool key_shadows() const { return key_shadows_; }
 
     /// Whether some material needs the curvatures of meshes (SurfaceDetail::Silhouette).
     [[nodiscard]] bool curves() const { return curves_; }
@@ -94,11 +99,13 @@ class MaterialPool {
     BufferTexture record_texture_;
     std::size_t material_count_ = 0;
     std::uint64_t material_version_ = 0;
+    DetailLimit limit_ = DetailLimit::Full;
     std::uint64_t revision_ = 0;
     ShadingModelSet shading_models_ = 0;
     MaterialLayers layers_ = 0;
     bool diffuses_ = false;
     bool curves_ = false;
+    bool key_shadows_ = false;
 };
 
 }  // namespace limn

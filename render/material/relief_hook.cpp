@@ -1,6 +1,5 @@
 #include "render/material/relief_hook.h"
 
-#include "ecs/components/surface.h"
 #include "render/material/material_maps.h"
 #include "render/material/surface_features.h"
 
@@ -9,14 +8,16 @@
 namespace limn {
 namespace {
 
-constexpr HookPoint kReliefPoints[] = {HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal};
+constexpr HookPoint kReliefPoints[] = {
+    HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal, HookPoint::Sample};
 
 constexpr HookDefinition kReliefDefinitions[] = {
     {kReliefBump, "RELIEF_BUMP"},      {kReliefParallax, "RELIEF_PARALLAX"},
     {kReliefLinear, "RELIEF_LINEAR"},  {kReliefCones, "RELIEF_CONES"},
     {kReliefClosed, "RELIEF_CLOSED"},  {kReliefCurved, "RELIEF_CURVED"},
     {kReliefShifted, "SHIFTED_UV"},    {kReliefOffMesh, "OFF_MESH"},
-    {kReliefObject, "OBJECT_NORMALS"},
+    {kReliefObject, "OBJECT_NORMALS"}, {kReliefRays, "RELIEF_RAYS"},
+    {kReliefBottom, "RELIEF_BOTTOM"},
 };
 
 /// In the order of SurfaceDetail.
@@ -32,10 +33,17 @@ constexpr std::uint16_t kReliefOfDetail[] = {
     kReliefCones | kBelow,
     kReliefClosed | kBelow,
     kReliefCurved | kBelow,
+    kReliefBump,
+    kReliefBump,
 };
 
 std::uint16_t relief_of_material(const Material& material) {
-    return kReliefOfDetail[static_cast<std::size_t>(material.detail)];
+    std::uint16_t bits = kReliefOfDetail[static_cast<std::size_t>(material.detail)];
+    if ((bits & kReliefOffMesh) != 0 && material.relief_shadow != ReliefShadow::Map) {
+        bits |= kReliefBottom;
+        bits |= material.relief_shadow == ReliefShadow::Ray ? kReliefRays : 0;
+    }
+    return bits;
 }
 
 /// Leaves out the maps that the surface does not need, and what needs a map that it does not have.
@@ -60,6 +68,12 @@ void add_relief(SurfaceFeatures& features, std::uint16_t) {
 }
 
 }  // namespace
+
+float depth_below_mesh(const Material& material) {
+    const bool below = (relief_of_material(material) & kReliefOffMesh) != 0
+                       && material.relief_texture.image.index != kNoAsset;
+    return below ? material.relief_depth : 0;
+}
 
 const SurfaceHook kReliefHook = {
     .name = "relief",

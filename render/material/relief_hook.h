@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/surface.h"
 #include "render/material/surface_hooks.h"
 
 #include <cstdint>
@@ -21,8 +22,13 @@ enum ReliefFeature : std::uint16_t {
     kReliefShifted = 1u << 7,  // maps are read at shifted texture coordinates
     kReliefOffMesh = 1u << 8,  // fragments lie below the mesh
     kReliefObject = 1u << 9,   // the normal map is in mesh space
+    kReliefRays = 1u << 10,    // key lights are shadowed by a second ray (key_shadows.glsl)
+    kReliefBottom = 1u << 11,  // casts shadows as its bottom, so that none falls on itself
 };
 
 extern const SurfaceHook kReliefHook;
+
+/// Depth of the relief below the mesh [m]; 0: fragments are on the mesh.
+[[nodiscard]] float depth_below_mesh(const Material& material);
 
 }  // namespace limn

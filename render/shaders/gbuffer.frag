@@ -3,6 +3,7 @@
 //   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
 //   MATERIAL_RECORDS  also the index of the material
 //   LAYER_TARGETS  with MATERIAL_RECORDS: also the layers of materials that have some
+//   KEY_SHADOWS  also the visibility of the key lights (lib/key_lights.glsl)
 //   HATCHED     strokes of hatching
 // Techniques: deferred.gbuffer
 #version 450
@@ -30,6 +31,17 @@ layout(location = kMaterialLocation) out uint material;
 layout(location = kMaterialLocation + 1) out uvec4 layers;
 #endif
 #endif
+#ifdef KEY_SHADOWS
+#if defined(LAYER_TARGETS)
+layout(location = kMaterialLocation + 2) out vec2 key_light;
+#elif defined(MATERIAL_RECORDS)
+layout(location = kMaterialLocation + 1) out vec2 key_light;
+#elif defined(VELOCITY)
+layout(location = 2) out vec2 key_light;
+#else
+layout(location = 1) out vec2 key_light;
+#endif
+#endif
 
 void main() {
     vec4 color = surface_color();
@@ -44,6 +56,9 @@ void main() {
 #endif
 #elif defined(MATERIAL_RECORDS)
     material = material_and_flags.x;
+#endif
+#ifdef KEY_SHADOWS
+    key_light = s.key_visibility;
 #endif
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);

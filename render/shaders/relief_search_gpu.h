@@ -4,7 +4,7 @@
 // A texel of the map has its depth in w; in z the depth of the back surface, or the ratio of its widest empty cone: its
 // radius in tiles to its height in depths of the relief.
 // Techniques: relief.double-depth, relief.early-out, relief.inverse-map, relief.ray-curved, relief.ray-quadric,
-//     relief.ray-range, relief.ray-service, relief.search, relief.thin-features
+//     relief.ray-range, relief.ray-service, relief.search, relief.self-shadow, relief.tangent-shadow, relief.thin-features
 
 #ifdef __cplusplus
 #pragma once
@@ -123,6 +123,34 @@ LIMN_SEARCH float relief_search_cones(ReliefRay ray, int steps, int refinements 
         }
     }
     return inside;
+}
+
+// The ray to a light from a point `depth` below the mesh, reversed: it enters at x = 0 and reaches the point at x = 1.
+// `up` and `fall`: as down and fall of relief_range(), of the direction to the light; y: its length [m].
+LIMN_SHARED ReliefRay relief_light_ray(vec2 uv, vec2 travel_to_light, float up, float fall, float length, float relief) {
+    float bend = fall * length * length / relief;
+    return ReliefRay(vec2(uv.x + travel_to_light.x, uv.y + travel_to_light.y), vec2(-travel_to_light.x, -travel_to_light.y), up * length / relief + 2.0f * bend, bend);
+}
+
+// Length [m] of the ray that leaves through the mesh from a point `depth` [m] below it.
+LIMN_SHARED float relief_way_out(float up, float fall, float depth) {
+    return 2.0f * depth / (up + sqrt(max(up * up + 4.0f * fall * depth, 0.0f)));
+}
+
+// How far in front of the point an occluder must be, and how deep the ray must be inside it for a full shadow, in depths
+// of the relief: more than the error of the search.
+const float kReliefShadowThreshold = 0.02f;
+
+// The fraction of light that reaches the end of `ray`, from relief_light_ray(), at `depth`.
+LIMN_SEARCH float relief_visibility(ReliefRay ray, float depth, int steps, bool is_closed LIMN_MAP) {
+    float inside = 0.0f;
+    for (int i = 0; i < steps; ++i) {
+        float x = (float(i) + 0.5f) / float(steps);
+        float before = depth - kReliefShadowThreshold - relief_depth_at(ray, x);
+        inside = max(inside, min(before, -relief_clearance(ray, x, is_closed LIMN_SAME_MAP)));
+    }
+    float t = min(inside / kReliefShadowThreshold, 1.0f);
+    return 1.0f - t * t * (3.0f - 2.0f * t);
 }
 
 #undef LIMN_SHARED

@@ -3,6 +3,7 @@
 //   ALPHA_MASK  holes where the opacity is below the cutoff let light through
 // Techniques: shadow.map-alpha
 #version 450
+#define SHADOW_CASTER
 #if defined(ALPHA_MASK) || defined(OFF_MESH)
 #include "lib/view.glsl"
 #include "lib/material.glsl"

@@ -2,7 +2,7 @@
 // (shadow.vol-extrude).
 //   PRISMS  one volume per triangle: the corner holds its cap; else it depends on whether its triangle faces the light
 //           (shadow.vol-per-edge)
-// Techniques: shadow.vol-extrude, shadow.vol-per-edge, shadow.vol-per-triangle
+// Techniques: shadow.relief-stencil, shadow.vol-extrude, shadow.vol-per-edge, shadow.vol-per-triangle
 #version 450
 #include "lib/view.glsl"
 #include "shadow_volume_gpu.h"
@@ -17,15 +17,29 @@ layout(location = 2) in vec4 world_row0;  // world_from_mesh
 layout(location = 3) in vec4 world_row1;
 layout(location = 4) in vec4 world_row2;
 layout(location = 5) in vec4 light;       // mesh space, homogeneous
+layout(location = 6) in vec4 relief;      // x: depth [m]
 
-// Distance of the light from the plane of the corner's triangle [m]. Planes transform by the cofactor matrix.
-float light_height(vec3 position_ws) {
+// Unit, of the corner's triangle. Planes transform by the cofactor matrix.
+vec3 plane_normal() {
     vec3 normal_ws = vec3(
         dot(cross(world_row1.xyz, world_row2.xyz), plane.xyz),
         dot(cross(world_row2.xyz, world_row0.xyz), plane.xyz),
         dot(cross(world_row0.xyz, world_row1.xyz), plane.xyz));
-    vec3 to_light = volume.light.xyz - position_ws;
-    return abs(dot(normal_ws, to_light)) * inversesqrt(max(dot(normal_ws, normal_ws), 1e-30));
+    return normal_ws * inversesqrt(max(dot(normal_ws, normal_ws), 1e-30));
+}
+
+// Distance of the light from the plane of the corner's triangle [m].
+float light_height(vec3 position_ws) {
+    return abs(dot(plane_normal(), volume.light.xyz - position_ws));
+}
+
+float near_shift(vec3 position_ws) {
+#ifdef PRISMS
+    float cosine = abs(dot(plane_normal(), normalize(away_from_light(position_ws, volume.light))));
+#else
+    float cosine = kSharedPushCosine;
+#endif
+    return volume.extrusion.z + relief_push(relief.x, cosine);
 }
 
 void main() {
@@ -38,7 +52,7 @@ void main() {
     bool far = !lit;
 #endif
     vec4 moved = far ? extrude_corner(position_ws, volume.light, volume.extrusion, light_height(position_ws))
-                     : vec4(shift_from_light(position_ws, volume.light, volume.extrusion.z), 1.0);
+                     : vec4(shift_from_light(position_ws, volume.light, near_shift(position_ws)), 1.0);
     gl_Position = view.clip_from_world * moved;
 #ifdef PRISMS
     gl_Position = lit ? gl_Position : vec4(0.0, 0.0, 0.0, 1.0);  // no area

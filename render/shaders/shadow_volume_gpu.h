@@ -18,6 +18,7 @@ using std::max;
 struct VolumeInstance {
     vec4 row[3];  // world_from_mesh
     vec4 light;   // in mesh space
+    vec4 relief;  // x: its depth [m]
 };
 
 // One light.
@@ -57,13 +58,22 @@ LIMN_SHARED vec4 extrude_corner(vec3 p, vec4 light, vec4 extrusion, float height
     return vec4(away, 0.0f);
 }
 
+// How far the near cap moves away from the light, besides its bias, so that relief `depth` below the caster's mesh is not
+// in its own volume (shadow.relief-stencil). `cosine`: between the direction to the light and the normal of the mesh.
+LIMN_SHARED float relief_push(float depth, float cosine) {
+    return depth / max(cosine, 0.1f);
+}
+
+// Of volumes whose corners are shared by faces of all directions: light at more than 75 degrees darkens the relief.
+const float kSharedPushCosine = 0.25f;
+
 #undef LIMN_SHARED
 
 // Bindings.
 const uint kShadowVolumeBinding = 2u;
 
 #ifdef __cplusplus
-static_assert(sizeof(VolumeInstance) == 64);
+static_assert(sizeof(VolumeInstance) == 80);
 static_assert(sizeof(VolumeBlock) == 32);
 }  // namespace limn::layout
 #endif

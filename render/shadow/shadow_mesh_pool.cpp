@@ -26,6 +26,10 @@ constexpr gpu::VertexAttribute kVolumeAttributes[] = {
      .stream = kVolumeInstanceStream,
      .components = 4,
      .offset = offsetof(layout::VolumeInstance, light)},
+    {.location = 6,
+     .stream = kVolumeInstanceStream,
+     .components = 4,
+     .offset = offsetof(layout::VolumeInstance, relief)},
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/material/relief_hook.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -11,7 +12,8 @@
 #include <algorithm>
 #include <tuple>
 
-// Techniques: shadow.caster-cull, shadow.closed-mesh, shadow.selection, shadow.stencil-pass
+// Techniques: shadow.caster-cull, shadow.closed-mesh, shadow.relief-stencil, shadow.selection,
+//     shadow.stencil-pass
 
 namespace limn {
 namespace {
@@ -37,6 +39,21 @@ LightRange volume_range(const ShadowedLight& light) {
 
 Vec4 homogeneous(const ShadowedLight& light) {
     return light.kind == LightKind::Directional ? Vec4(-light.axis, 0) : Vec4(light.position, 1);
+}
+
+/// Depth of the relief of a material on an instance [m]; 0 without one.
+float relief_depth_of(
+    const Assets& assets, MaterialId material, const glm::dmat4& world_from_mesh) {
+    if (material.index >= assets.materials.size()) {
+        return 0;
+    }
+    const double scale = std::cbrt(std::abs(glm::determinant(world_from_mesh)));
+    return depth_below_mesh(assets.materials[material.index]) * static_cast<float>(scale);
+}
+
+bool has_holes(const Material& material) {
+    return material.alpha_mode == AlphaMode::Mask
+           || (material.detail == SurfaceDetail::DoubleDepth && depth_below_mesh(material) > 0);
 }
 
 layout::VolumeBlock make_block(const ShadowVolume& settings, const Vec4& light, float radius) {
@@ -279,12 +296,12 @@ void VolumeCollector::add_caster(
             return;
         }
         if (surface.material.index < assets.materials.size()
-            && assets.materials[surface.material.index].alpha_mode == AlphaMode::Mask) {
+            && has_holes(assets.materials[surface.material.index])) {
             refuse(
                 candidate, "shadow volumes: material "
                                + assets.materials[surface.material.index].name
-                               + " is alpha-tested and cannot cast volumes; lights that reach it "
-                                 "use shadow maps");
+                               + " has holes and cannot cast volumes; lights that reach it use "
+                                 "shadow maps");
             return;
         }
     }
@@ -296,6 +313,7 @@ void VolumeCollector::add_caster(
     const auto& camera = view.world_from_camera.row;
     const Vec3 eye = {camera[0].w, camera[1].w, camera[2].w};
     const float to_corner = view.near * glm::length(Vec3(widest_tangent(view), 1));
+    const float relief = relief_depth_of(assets, surface.material, world_matrix);
     const bool may_contain_eye = shadow_may_contain(
         box, candidate.light, eye, 1.01f * to_corner + std::max(settings.cap_bias, 0.0f));
     const bool z_fail = settings.mode == StencilMode::ZFail
@@ -307,10 +325,11 @@ void VolumeCollector::add_caster(
     caster.state = (prism ? kPrism : 0) | (z_fail ? kZFail : 0) | (determinant < 0 ? kMirrored : 0);
     caster.mesh = surface.mesh.index;
     // With z-pass the caps of an infinite volume are never visible: the caster hides them.
-    caster.caps = z_fail || prism || settings.extrusion != Extrusion::Infinite;
+    caster.caps = z_fail || prism || settings.extrusion != Extrusion::Infinite || relief > 0;
     for (int i = 0; i < 3; ++i) {
         caster.instance.row[i] = world_from_mesh.row[i];
     }
+    caster.instance.relief = {relief, 0, 0, 0};
     caster.instance.light = Vec4(glm::inverse(world_matrix) * glm::dvec4(candidate.light));
 }
 

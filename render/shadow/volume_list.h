@@ -21,15 +21,16 @@ namespace limn {
 // volume: a mesh that is not closed or is deformed, or a material with holes (shadow.selection).
 // Only casters within the light's range are considered (shadow.caster-cull); of these, casters
 // whose volume is off screen are skipped, but not casters that are themselves off screen.
+// Relief casts the volume of its mesh, whose near cap is behind the relief (shadow.relief-stencil).
 //
 // Closed casters whose volume cannot contain the eye are counted by z-pass, where an infinite
 // volume needs no caps; the others by z-fail.
 
 inline constexpr int kMaxVolumeLights = 8;
 
-/// Draws that share a pipeline state.
 struct ShadowVolumePass;
 
+/// Draws that share a pipeline state.
 struct VolumeRun {
     bool prisms = false;  ///< one volume per triangle
     bool z_fail = false;

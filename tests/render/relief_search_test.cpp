@@ -16,10 +16,14 @@ namespace {
 
 using layout::kReliefMiss;
 using layout::relief_depth_at;
+using layout::relief_light_ray;
 using layout::relief_range;
 using layout::relief_search;
 using layout::relief_search_cones;
 using layout::relief_search_linear;
+using layout::relief_uv_at;
+using layout::relief_visibility;
+using layout::relief_way_out;
 using layout::ReliefRay;
 
 constexpr int kSteps = 10;
@@ -307,6 +311,89 @@ TEST_CASE(
         const float found = relief_search(kAcross, 256, 8, false, map);
         CHECK(found == near(expected).scale(1).epsilon(1e-4));
     }
+}
+
+/// From a point of a flat mesh's relief, whose depth is 1 m, toward light that travels `k` tiles
+/// along u per meter of depth.
+ReliefRay light_ray(const Vec2& uv, float depth, float k) {
+    return relief_light_ray(uv, {-k * depth, 0}, 1, 0, relief_way_out(1, 0, depth), 1);
+}
+
+TEST_CASE(
+    "relief self-shadow: the ray from the light enters at the mesh and ends at the point"
+    * technique("relief.self-shadow, relief.tangent-shadow")) {
+    const ReliefRay ray = light_ray({0.25f, 0.5f}, 0.5f, -1);
+    CHECK(relief_uv_at(ray, 0).x == 0.75f);
+    CHECK(relief_uv_at(ray, 1).x == 0.25f);
+    for (const float fall : {-0.4f, 0.0f, 0.7f}) {
+        const float depth = 0.13f;
+        const float relief = 0.2f;
+        const float up = 0.6f;
+        const float length = relief_way_out(up, fall, depth);
+        // Above the mesh, whose quadric falls away: the height gained is the depth of the point.
+        CHECK(up * length + fall * length * length == near(depth));
+        const ReliefRay curved = relief_light_ray({0, 0}, {0.1f, 0}, up, fall, length, relief);
+        CAPTURE(fall);
+        CHECK(relief_depth_at(curved, 0) == 0);
+        CHECK(relief_depth_at(curved, 1) == near(depth / relief));
+        const float half = 0.5f * length;
+        CHECK(
+            relief_depth_at(curved, 0.5f)
+            == near((depth - up * half - fall * half * half) / relief));
+    }
+}
+
+TEST_CASE(
+    "relief self-shadow: a pyramid shades its far face from light flatter than its face"
+    * technique("relief.self-shadow, relief.tangent-shadow")) {
+    const auto visible = [](float k) {
+        return relief_visibility(light_ray({0.25f, 0.5f}, 0.5f, k), 0.5f, 24, false, pyramid);
+    };
+    for (const float k : {-1.0f, -0.75f, -0.6f}) {
+        CAPTURE(k);
+        CHECK(visible(k) == 0);
+    }
+    for (const float k : {-0.5f, -0.4f, 0.0f, 1.0f}) {
+        CAPTURE(k);
+        CHECK(visible(k) == 1);
+    }
+}
+
+TEST_CASE(
+    "relief self-shadow: none on a flat relief, and none from a lamp at the eye"
+    * technique("relief.self-shadow, relief.tangent-shadow")) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (int i = 0; i < 300; ++i) {
+        const float depth = unit(random);
+        const float k = 8 * unit(random) - 4;
+        // As deep as the search of ten steps finds it.
+        const float found = std::min(depth + unit(random) * kLastInterval, 1.0f);
+        CAPTURE(depth);
+        CHECK(
+            relief_visibility(light_ray({0, 0}, found, k), found, 1 + i % 64, false, flat(depth))
+            == 1);
+        const float phase = 6.28f * unit(random);
+        const auto wavy = [=](const Vec2& uv) {
+            return Vec4(0, 0, 1, 0.5f + 0.4f * std::sin(12.0f * uv.x + phase));
+        };
+        const float seen = relief_search(kAcross, 256, 8, false, wavy);
+        if (seen <= 1) {
+            CHECK(relief_visibility(light_ray({seen, 0}, seen, 1), seen, 256, false, wavy) == 1);
+        }
+    }
+}
+
+TEST_CASE(
+    "relief self-shadow: light passes behind the back surface of a closed relief"
+    * technique("relief.self-shadow")) {
+    // A slab between depths 0.2 and 0.3; the point is at 0.8.
+    const auto slab = [](const Vec2&) { return Vec4(0, 0, 0.3f, 0.2f); };
+    const ReliefRay ray = light_ray({0, 0}, 0.8f, 0.5f);
+    CHECK(relief_visibility(ray, 0.8f, 64, true, slab) == 0);
+    const auto thin = [](const Vec2&) { return Vec4(0, 0, 0.2f, 0.2f); };
+    CHECK(relief_visibility(ray, 0.8f, 64, true, thin) == 1);
+    CHECK(relief_visibility(ray, 0.8f, 64, false, thin) == 0);
 }
 
 }  // namespace limn::test::relief_search_test

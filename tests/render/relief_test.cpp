@@ -3,6 +3,7 @@
 
 #include "ecs/components/rendering.h"
 #include "ecs/components/shadow.h"
+#include "ecs/components/shadow_volume.h"
 #include "render/material/relief_hook.h"
 #include "render/material/surface_features.h"
 #include "tests/near.h"
@@ -115,6 +116,36 @@ struct ReliefScene : Scene {
     ImageId map;
 };
 
+/// Pyramids of 2 m, 0.4 m high, in the low sun and by a lamp, from above.
+struct PyramidScene : ReliefScene {
+    PyramidScene() : pyramid(add(pyramid_map())) {}
+
+    void build(
+        ReliefShadow shadow, const Vec3& to_sun, LightMethod method = LightMethod::Clustered,
+        bool lamp = true) {
+        world.clear();
+        world.insert_resource(Rendering{.lights = method});
+        world.create(
+            DirectionalLight{.illuminance = 3}, WorldTransform{look_at(to_sun, {0, 0, 0})},
+            Shadow{.resolution = 2048, .distance = 8});
+        if (lamp) {
+            world.create(
+                PointLight{.intensity = 1, .radius = 4}, WorldTransform{at({-0.7f, 0.2f, 0.3f})},
+                Shadow{.resolution = 1024});
+        }
+        Material stone = {.base_color = {1, 1, 1, 1}, .roughness = 1};
+        stone.detail = SurfaceDetail::Relief;
+        stone.relief_depth = 0.4f;
+        stone.relief_steps = 96;
+        stone.relief_refinements = 8;
+        stone.relief_texture = {.image = pyramid};
+        stone.relief_shadow = shadow;
+        place(add(large_square(2)), add(stone), at({0, 0, 0}));
+    }
+    ImageId pyramid;
+    const RenderView view = look({0, 0, 1.6f}, {0, 0, 0}, kSize, kSize);
+};
+
 /// Fraction of the pixels that differ in some channel by more than `visible`.
 double different_pixels(const gpu::FloatImage& a, const gpu::FloatImage& b, float visible) {
     REQUIRE(a.pixels.size() == b.pixels.size());
@@ -189,6 +220,115 @@ TEST_CASE_FIXTURE(
         // A texel of the map, whose borders fall elsewhere.
         CHECK(different_pixels(radiance(view), expected, 0.05f) < 0.003);
     }
+}
+
+TEST_CASE_FIXTURE(
+    ReliefScene,
+    "relief: cast as its bottom, a flat relief shadows others as before and itself nowhere"
+        * technique("shadow.relief-cast, relief.self-shadow")) {
+    const auto build = [&] {
+        world.clear();
+        world.create(
+            DirectionalLight{.illuminance = 5},
+            WorldTransform{look_at({1.4f, 1.4f, 1.2f}, {0, 0, 0})}, Shadow{.resolution = 1024});
+        place(add(large_square(8)), add(Material{}), at({0, 0, -1.5f}));
+    };
+    build();
+    place_plane();
+    const RenderView view = oblique();
+    const gpu::FloatImage expected = radiance(view);
+    for (const ReliefShadow shadow : {ReliefShadow::Ray, ReliefShadow::None}) {
+        for (const SurfaceDetail detail : kSearches) {
+            build();
+            Material material = carved(detail, map);
+            material.relief_shadow = shadow;
+            place(add(large_square(8)), add(material), at({0, 0, 0}));
+            CAPTURE(static_cast<int>(detail));
+            CHECK(different_pixels(radiance(view), expected, 0.05f) < 0.003);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    PyramidScene,
+    "relief self-shadow: a second ray finds what a fine shadow map shows"
+        * technique("relief.self-shadow, relief.tangent-shadow, shadow.relief-self")) {
+    // The faces fall by 0.4 m in a meter: light that is flatter leaves the far ones dark.
+    const Vec3 low = {-8, 0, 2.2f};
+    build(ReliefShadow::None, low);
+    const gpu::FloatImage lit = radiance(view);
+    build(ReliefShadow::Map, low);
+    const gpu::FloatImage mapped = radiance(view);
+    build(ReliefShadow::Ray, low);
+    const gpu::FloatImage traced = radiance(view);
+    REQUIRE(different_pixels(mapped, lit, 0.1f) > 0.1);
+    CHECK(different_pixels(traced, mapped, 0.1f) < 0.05);
+    for (const LightMethod method :
+         {LightMethod::ObjectMajor, LightMethod::LightMajor, LightMethod::FullScreen,
+          LightMethod::Volumes}) {
+        build(ReliefShadow::Ray, low, method);
+        CAPTURE(static_cast<int>(method));
+        CHECK(different_pixels(radiance(view), traced, 4e-3f) == 0);
+    }
+    // Steeper than the faces: no shadow.
+    const Vec3 high = {-2, 0, 2.2f};
+    build(ReliefShadow::None, high, LightMethod::Clustered, false);
+    const gpu::FloatImage none = radiance(view);
+    build(ReliefShadow::Ray, high, LightMethod::Clustered, false);
+    CHECK(different_pixels(radiance(view), none, 0.01f) == 0);
+}
+
+TEST_CASE_FIXTURE(
+    ReliefScene, "relief: shadow volumes end on it as on a plane that deep"
+                     * technique("shadow.relief-stencil")) {
+    const MeshId post = add(make_ball(24));
+    const auto build = [&] {
+        world.clear();
+        world.create(
+            DirectionalLight{.illuminance = 5},
+            WorldTransform{look_at({1.4f, 1.4f, 1.2f}, {0, 0, 0})},
+            Shadow{.method = ShadowMethod::Volume}, ShadowVolume{.kind = VolumeKind::PerTriangle});
+        place(post, add(Material{}), affine_from({0.2f, 0.2f, 0.2f}, {1, 0, 0, 0}, Vec3(0.15f)));
+    };
+    build();
+    place_plane();
+    const RenderView view = oblique();
+    const gpu::FloatImage expected = radiance(view);
+    REQUIRE(mean_of(expected, 0) > 0.05);
+    build();
+    place_relief(SurfaceDetail::Relief);
+    CHECK(different_pixels(radiance(view), expected, 0.05f) < 0.003);
+    // Without its depth the shadow would be elsewhere.
+    build();
+    place_relief(SurfaceDetail::Parallax);
+    CHECK(different_pixels(radiance(view), expected, 0.05f) > 0.02);
+}
+
+TEST_CASE_FIXTURE(
+    ReliefScene, "relief: a closed caster's own shadow volume does not darken its relief"
+                     * technique("shadow.relief-stencil")) {
+    const ImageId deepest = add(flat_map(255));
+    Material stone = {.base_color = {1, 1, 1, 1}};
+    stone.relief_texture = {.image = deepest};
+    stone.relief_depth = 0.1f;
+    stone.detail = SurfaceDetail::Silhouette;
+    const RenderView view = look({0, 0, 3}, {0, 0, 0}, kSize, kSize);
+    const auto build = [&](bool shadowed) {
+        world.clear();
+        const Entity lamp = world.create(
+            PointLight{.intensity = 9, .radius = 9}, WorldTransform{at({0.8f, 0.8f, 3})});
+        if (shadowed) {
+            world.add(lamp, Shadow{.method = ShadowMethod::Volume});
+            world.add(lamp, ShadowVolume{});
+        }
+        place(add(make_ball(48)), add(stone), at({0, 0, 0}));
+    };
+    build(false);
+    const gpu::FloatImage expected = radiance(view);
+    REQUIRE(mean_of(expected, 0) > 0.01);
+    build(true);
+    // At the terminator light is so flat that the volume begins above the relief.
+    CHECK(different_pixels(radiance(view), expected, 0.05f) < 0.02);
 }
 
 TEST_CASE_FIXTURE(

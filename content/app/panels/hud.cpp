@@ -221,6 +221,9 @@ void Hud::draw_status(const HudStatus& status) {
         if (*status.weather != '\0') {
             ImGui::TextColored(kHudText, "%s", status.weather);
         }
+        if (*status.detail != '\0') {
+            numbers_text(style_, kHudText, status.detail);
+        }
         if (*status.drops != '\0') {
             ImGui::TextColored(kHudBad, "%s", status.drops);
         }

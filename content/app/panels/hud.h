@@ -19,6 +19,7 @@ struct HudStatus {
     const char* level = "";
     const char* camera = "";     ///< name of the camera mode
     const char* weather = "";    ///< wind and rain, if the level has weather
+    const char* detail = "";     ///< cost of the surface detail, if the player changed it
     const char* drops = "";      ///< warning about dropped particles
     double time = 0.0;           ///< of the simulation [s]
     double rate = 1.0;           ///< simulated seconds per real second; < 1: slow motion

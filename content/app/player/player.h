@@ -9,6 +9,7 @@
 #include "content/app/panels/model_panel.h"
 #include "content/app/panels/profiler_panel.h"
 #include "content/app/panels/shows_panel.h"
+#include "content/app/player/detail_costs.h"
 #include "content/app/player/light_drag.h"
 #include "content/app/player/pick.h"
 #include "content/app/player/play_command.h"
@@ -81,6 +82,8 @@ class Player {
     /// is none.
     void close_one_or_ask();
     void cycle_show_side();
+    /// Steps down the ladder of surface detail, or up.
+    void change_detail(int steps);
     void toggle_paths();
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
@@ -183,6 +186,7 @@ class Player {
     bool pointer_taken_ = false;       ///< by an editor
     bool paused_ = false;
     bool step_once_ = false;
+    DetailCosts detail_costs_;
     bool paths_shown_ = false;
     std::uint64_t shown_revision_ = 0;  ///< of the edits (UndoStack::revision)
     bool files_changed_ = false;        ///< of the level or the shaders, since the last frame

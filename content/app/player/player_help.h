@@ -32,6 +32,7 @@ struct HelpState {
     bool furrows = false;    ///< the editor of furrows is open
     bool skin = false;       ///< some skin can be pulled
     bool panel = false;      ///< some panel is open
+    bool relief = false;     ///< some material has surface detail beyond normal maps
 };
 
 /// A key of the window: its action and when the help lists it.

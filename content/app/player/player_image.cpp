@@ -170,11 +170,16 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     draw_comparison_overlay(hud_->style(), stage_->world);
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
+    detail_costs_.add(
+        stage_->world.resource<Rendering>().surface_detail, profiler_.median_frame_ms(),
+        {view.width, view.height}, dt);
+    const std::string detail = detail_costs_.describe();
     const std::string drops = describe_drops(stage_->world);
     hud_->draw_status(
         {.level = (stage_->scene.title.empty() ? stage_->scene.name : stage_->scene.title).c_str(),
          .camera = camera_mode_name(camera_.mode),
          .weather = weather.c_str(),
+         .detail = detail.c_str(),
          .drops = drops.c_str(),
          .time = shown_time_,
          .rate = rate_,
@@ -251,8 +256,9 @@ HelpState Player::help_state() const {
         .inspector = inspector_.open,
         .furrows = furrows_.is_open(),
         .skin = !std::as_const(stage_->world).query<const PullableSkin>().empty(),
-        .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
-                 || model_panel_.open};
+        .panel =
+            inspector_.open || profiler_.open || buffers_->open || shows_.open || model_panel_.open,
+        .relief = has_relief(stage_->world)};
 }
 
 }  // namespace limn

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -28,6 +29,9 @@ bool has_inspector(const HelpState& state) {
 }
 bool edits_furrows(const HelpState& state) {
     return state.furrows;
+}
+bool shows_relief(const HelpState& state) {
+    return state.relief;
 }
 bool has_edits(const HelpState& state) {
     return state.edited;
@@ -82,6 +86,10 @@ std::span<const PlayerKey> Player::keys() {
          [](Player& p) { p.cycle_show_side(); }, [](const HelpState& state) { return state.show; }},
         {"Panels", "F8", "hide the status", GLFW_KEY_F8, 0,
          [](Player& p) { p.hud_->status_shown = !p.hud_->status_shown; }},
+        {"Panels", "-", "less, more surface detail, from flat to relief, with its cost",
+         GLFW_KEY_MINUS, 0, [](Player& p) { p.change_detail(1); }, shows_relief},
+        {"Panels", "=", "less, more surface detail, from flat to relief, with its cost",
+         GLFW_KEY_EQUAL, 0, [](Player& p) { p.change_detail(-1); }, shows_relief},
         {"Panels", "F12", "paths with their knots, camera paths with times", GLFW_KEY_F12, 0,
          [](Player& p) { p.toggle_paths(); }, [](const HelpState& state) { return state.paths; }},
         {"Panels", "M", "clips, morph targets and cameras of the model", GLFW_KEY_M, 0,
@@ -193,6 +201,13 @@ void Player::close_one_or_ask() {
     } else {
         ask_to_quit();
     }
+}
+
+void Player::change_detail(int steps) {
+    DetailLimit& limit = stage_->world.resource<Rendering>().surface_detail;
+    const int next = std::clamp(static_cast<int>(limit) + steps, 0, kDetailLimits - 1);
+    limit = static_cast<DetailLimit>(next);
+    hud_->toast(fmt::format("surface detail: {}", kDetailLimitTexts[next]));
 }
 
 void Player::cycle_show_side() {

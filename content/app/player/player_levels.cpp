@@ -36,6 +36,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     inspector_.reset();
     furrows_.reset();
     camera_ = {};
+    detail_costs_.forget();
     const Bounds& bounds = stage_->scene.bounds;
     if (stage_->scene.model && !is_empty(stage_->scene.model->subject)) {
         const float radius = glm::length(half_extent(stage_->scene.model->subject));

@@ -12,6 +12,9 @@ SurfaceSample forward_surface() {
     gl_FragDepth = surface_depth;
 #endif
     s.material = material_and_flags.x;
+#ifdef KEY_SHADOWS
+    s.key_visibility = floor(whole.key_visibility * 255.0 + 0.5) / 255.0;
+#endif
 #ifdef LAYERED
     s.layers = unpack_layers(pack_layers(whole.layers, bits.x), s.normal_ws);
 #endif

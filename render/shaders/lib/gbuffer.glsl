@@ -19,7 +19,7 @@
 // All zero: no surface here. The index of the
 // material is in a target of its own, which exists only where shading models read their material's record when lit
 // (lib/stored_surface.glsl). So are the layers of surfaces (lib/surface_layers.glsl), where some material has them;
-// their last 32 bits stand beside the index.
+// their last 32 bits stand beside the index. KEY_SHADOWS: so is the visibility of the key lights.
 // Techniques: deferred.gbuffer
 
 #include "generated/model_numbers.glsl"
@@ -88,6 +88,9 @@ struct SurfaceSample {
 #ifdef LAYERED
     SurfaceLayers layers;  // not in pack_surface()
 #endif
+#ifdef KEY_SHADOWS
+    vec2 key_visibility;  // of the key lights (lib/key_lights.glsl), 0 .. 1; not in pack_surface()
+#endif
 };
 
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
@@ -106,6 +109,9 @@ void set_plain(inout SurfaceSample s) {
 #endif
 #ifdef LAYERED
     s.layers = plain_layers(s.normal_ws);
+#endif
+#ifdef KEY_SHADOWS
+    s.key_visibility = vec2(1.0);
 #endif
 }
 
@@ -197,6 +203,9 @@ SurfaceSample unpack_surface(uvec4 g) {
 #endif
 #ifdef STRANDS
     s.strand_ws = has_strands(s.model) && g.w != 0u ? unpack_direction(g.w) : vec3(0.0);
+#endif
+#ifdef KEY_SHADOWS
+    s.key_visibility = vec2(1.0);
 #endif
 #ifdef LAYERED
     s.layers = plain_layers(s.normal_ws);

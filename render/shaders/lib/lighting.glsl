@@ -9,11 +9,13 @@
 //   LOCAL_LIGHTS        there are point or spot lights
 //   WATERS              there is water; ON_WATER: and its surface is being shaded
 //   MIRRORS             some water reflects the sun's light upward
+//   KEY_SHADOWS         surfaces know the visibility of the key lights
 //   PARTICLE_SHADOWS    particles cast shadows: 1: in the first directional light, 2: in a spot with a shadow
 // Techniques: env.reflect, shade.lighting-space, skin.transmission, wrinkle.compression.bump-blend,
 //     wrinkle.fold-light
 
 #include "lib/diffusion.glsl"
+#include "lib/key_lights.glsl"
 #include "lib/light.glsl"
 #include "lib/numbers.glsl"  // must not be included first within the #ifdef below
 #include "lib/optics.glsl"
@@ -39,7 +41,6 @@
 #include "lib/under_water.glsl"
 #endif
 
-layout(binding = kLightsUnit) uniform samplerBuffer lights;           // LightRecord
 layout(binding = kLightIndicesUnit) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
 layout(binding = kLightCellsUnit) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 #if defined(UNDER_WATER) && defined(MIRRORS)
@@ -142,6 +143,15 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
     return Incoming(to_light, irradiance, irradiance);
 }
 
+// The light that a surface's own relief lets through.
+Incoming past_relief(Incoming light, Reflector r, int index) {
+#ifdef KEY_SHADOWS
+    ivec2 keys = key_lights();
+    light.irradiance *= index == keys.x ? r.key_visibility.x : index == keys.y ? r.key_visibility.y : 1.0;
+#endif
+    return light;
+}
+
 #if (defined(SHADE_SUBSURFACE) || defined(SHADE_HAIR)) && defined(SHADOWS) && defined(SHADOW_MAPS)
 // Adds the light of a lamp with a shadow, and light transmitted through a body:
 //   skin  the diffuse light that has entered at the back: by the profile, over the distance from the surface in the
@@ -149,6 +159,7 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium me
 //         Translucency", 2010)
 //   hair  light that passes strands of the same body
 void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
+    light = past_relief(light, r, index);
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
     float thickness = shadow_thickness(shadow, position_ws, light.to_light);
 #ifdef SHADE_HAIR
@@ -162,7 +173,7 @@ void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, ve
 }
 #else
 void add_shadowed(inout LightSum sum, Reflector r, int index, Incoming light, vec3 position_ws) {
-    add_light(sum, r, light);
+    add_light(sum, r, past_relief(light, r, index));
 }
 #endif
 
@@ -182,7 +193,7 @@ const int kNoLight = 0x7fffffff;
 
 // Clamps to existing records: fetches past the end of a buffer texture are undefined.
 int existing_light(int index) {
-    return min(index, textureSize(lights) / int(kLightTexels) - 1);
+    return min(index, light_count() - 1);
 }
 
 // Adds the directional lights.

@@ -60,6 +60,9 @@ struct Reflector {
 #ifdef SMOOTH_NORMALS
     vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
 #endif
+#ifdef KEY_SHADOWS
+    vec2 key_visibility;
+#endif
 #ifdef FOLD_LIGHT
     float open;        // of the fold that light bounces in, > 0 (lib/fold_light.glsl); 1: none
 #endif
@@ -104,6 +107,9 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 #endif
 #ifdef FOLD_LIGHT
     r.open = s.bounces ? clamp(dot(s.normal_ws, s.smooth_normal_ws), kMinOpen, 1.0) : 1.0;
+#endif
+#ifdef KEY_SHADOWS
+    r.key_visibility = s.key_visibility;
 #endif
 #ifdef LAYER_ANISOTROPY
     r.along = vec3(0.0);

@@ -6,11 +6,14 @@
 //   RELIEF_CLOSED    the relief has a back surface; texels without a surface are holes
 //   RELIEF_CURVED    the ray bends with the mesh's quadric and may leave the relief: a hole
 //   RELIEF_BUMP      normals from differences of depth, and nothing else
+//   RELIEF_RAYS      with KEY_SHADOWS: a second ray finds whether the key lights are visible
+//   RELIEF_BOTTOM    with SHADOW_CASTER: the depth of the bottom, so that no shadow falls on the relief itself
 //   OBJECT_NORMALS   without relief: the normal map holds normals in mesh space
 // Techniques: bump.height-field, bump.object-space-map, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
-//     relief.parallax, relief.permutations, relief.planar, relief.silhouette, relief.tangent, shadow.relief-cast,
-//     shadow.relief-matrix, shadow.relief-receive
+//     relief.parallax, relief.permutations, relief.planar, relief.self-shadow, relief.silhouette, relief.tangent,
+//     relief.tangent-shadow, shadow.relief-cast, shadow.relief-matrix, shadow.relief-receive, shadow.relief-self
 
+#include "lib/key_lights.glsl"
 #include "lib/view.glsl"
 
 #if defined(OBJECT_NORMALS) && defined(NORMAL_MAP) && !defined(LIT_AT_VERTICES)
@@ -63,12 +66,45 @@ vec4 relief_travel(ReliefFrame frame, vec3 step_ws) {
     return dot(step_ws, frame.dual_x) * dFdx(uv) + dot(step_ws, frame.dual_y) * dFdy(uv);
 }
 
+#if defined(RELIEF_CLOSED)
+const bool kReliefIsClosed = true;
+#else
+const bool kReliefIsClosed = false;
+#endif
+
+// The visible point that the search found.
+float relief_found = 0.0;  // its depth, of that of the relief; 0: on the mesh
+vec4 relief_found_uv;
+
+// How the mesh's quadric falls away along a direction [1/m].
+float relief_fall(vec3 direction_ws, vec3 normal) {
+#ifdef RELIEF_CURVED
+    vec3 bitangent = cross(normal, tangent_ws.xyz) * tangent_ws.w;
+    vec2 along = vec2(dot(direction_ws, tangent_ws.xyz), dot(direction_ws, bitangent));
+    return dot(relief_curvature, along * along);
+#else
+    return 0.0;
+#endif
+}
+
 void find_relief_lod() {
     vec2 size = vec2(textureSize(material_maps[RELIEF_MAP], 0).xy);
     vec2 dx = map_gradient(kReliefSlot, dFdx(uv)) * size;
     vec2 dy = map_gradient(kReliefSlot, dFdy(uv)) * size;
     relief_lod = max(0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12)), 0.0);
 }
+#endif
+
+#if defined(RELIEF) && !defined(RELIEF_BUMP)
+// Fewer for rays head on, which pass less of the map.
+int relief_steps(float most, float cosine) {
+    return int(most * mix(1.0, 0.35, cosine) + 0.5);
+}
+#endif
+
+// The outline of a relief without holes is that of its mesh: casters need no search.
+#if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER) && !defined(RELIEF_CLOSED) && !defined(RELIEF_CURVED)
+#define RELIEF_SKIPPED
 #endif
 
 void relief_uv(inout vec4 uv) {
@@ -100,17 +136,17 @@ void relief_uv(inout vec4 uv) {
     vec2 range = vec2(depth / limited, 1.0);
     float fall = 0.0;
 #ifdef RELIEF_CURVED
-    vec3 bitangent = cross(normal, tangent_ws.xyz) * tangent_ws.w;
-    vec2 along = vec2(dot(ray_ws, tangent_ws.xyz), dot(ray_ws, bitangent));
-    fall = dot(relief_curvature, along * along);
+    fall = relief_fall(ray_ws, normal);
     range = relief_range(limited, fall, depth);
 #endif
     vec4 travel = relief_travel(frame, range.x * (ray_ws + down * normal));
     ReliefRay ray = ReliefRay(
         map_coordinates(kReliefSlot, uv), map_gradient(kReliefSlot, travel), limited * range.x / depth,
         fall * range.x * range.x / depth);
-    int steps = int(search.y * mix(1.0, 0.35, down) + 0.5);
-#if defined(RELIEF_CONES)
+    int steps = relief_steps(search.y, down);
+#if defined(RELIEF_SKIPPED)
+    float x = 1.0;
+#elif defined(RELIEF_CONES)
     float x = relief_search_cones(ray, steps, int(search.z));
 #elif defined(RELIEF_LINEAR)
     float x = relief_search_linear(ray, steps);
@@ -127,8 +163,13 @@ void relief_uv(inout vec4 uv) {
     if (is_back) {
         return;
     }
+#if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER)
+    x = 1.0;
+#endif
     x = min(x, 1.0);
     uv += travel * x;
+    relief_found = relief_depth_at(ray, x);
+    relief_found_uv = uv;
     surface_offset = ray_ws * (range.x * x);
     vec4 moved = clip + view.clip_from_world * vec4(surface_offset, 0.0);
     surface_depth = min(gl_FragCoord.z, moved.z / moved.w);
@@ -165,5 +206,33 @@ void relief_normal(inout vec3 normal) {
     float z = sqrt(max(1.0 - dot(n, n), 0.01));
     normal.xy += normal.z * material_texel(1).w * n / z;  // slopes of heights add up
 #endif
+#endif
+}
+
+#if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS)
+// The fraction of the light from a direction that the relief lets through to the point that the search found.
+float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
+    float relief = search.x * relief_position.w;
+    float up = dot(to_light, frame.normal);
+    float limited = max(up, kMinReliefCosine);
+    float fall = relief_fall(to_light, frame.normal);
+    float length = relief_way_out(limited, fall, relief_found * relief);
+    vec4 travel = relief_travel(frame, length * (to_light - up * frame.normal));
+    ReliefRay ray = relief_light_ray(
+        map_coordinates(kReliefSlot, relief_found_uv), map_gradient(kReliefSlot, travel), limited, fall, length, relief);
+    float steps = float(relief_steps(search.y, limited)) * relief_found;
+    float visible = relief_visibility(ray, relief_found, int(steps) + 2, kReliefIsClosed);
+    return up > 0.0 ? visible : 0.0;
+}
+#endif
+
+void relief_sample(inout SurfaceSample s, vec3 smooth_normal) {
+#if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS)
+    vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
+    ReliefFrame frame = relief_frame(normalize(normal_ws));
+    vec3 position_ws = relief_position.xyz + view.camera_ws.xyz + surface_offset;
+    ivec2 keys = key_lights();
+    s.key_visibility.x = keys.x >= 0 ? relief_light(frame, search, to_key_light(keys.x, position_ws)) : 1.0;
+    s.key_visibility.y = keys.y >= 0 ? relief_light(frame, search, to_key_light(keys.y, position_ws)) : 1.0;
 #endif
 }

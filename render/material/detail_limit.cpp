@@ -1,0 +1,40 @@
+#include "render/material/detail_limit.h"
+
+#include <cstddef>
+
+// Techniques: relief.selection
+
+namespace limn {
+namespace {
+
+/// In the order of SurfaceDetail: the first limit, of those from dear to cheap, that it exceeds.
+constexpr DetailLimit kExceeded[] = {
+    DetailLimit::Flat,           // Normal
+    DetailLimit{kDetailLimits},  // Flat: none
+    DetailLimit::Flat,           // Bump
+    DetailLimit::Flat,           // ObjectNormal
+    DetailLimit::Normal,         // Parallax
+    DetailLimit::Parallax,       // Occlusion
+    DetailLimit::Occlusion,      // Relief
+    DetailLimit::Occlusion,      // Cone
+    DetailLimit::Relief,         // DoubleDepth
+    DetailLimit::Relief,         // Silhouette
+    DetailLimit::Occlusion,      // Odd
+    DetailLimit::Relief,         // Displaced
+};
+
+/// In the order of DetailLimit; that of Full is never used.
+constexpr SurfaceDetail kFallsTo[kDetailLimits] = {
+    SurfaceDetail::Silhouette, SurfaceDetail::Relief, SurfaceDetail::Occlusion,
+    SurfaceDetail::Parallax,   SurfaceDetail::Normal, SurfaceDetail::Flat,
+};
+
+}  // namespace
+
+SurfaceDetail limited_detail(SurfaceDetail detail, DetailLimit limit) {
+    return limit >= kExceeded[static_cast<std::size_t>(detail)]
+               ? kFallsTo[static_cast<std::size_t>(limit)]
+               : detail;
+}
+
+}  // namespace limn

@@ -1,0 +1,25 @@
+// The records of lights; and the two key lights, whose shadows surfaces may know on their own (KEY_SHADOWS: relief that
+// traces rays toward them): the first directional light, and the first other light with a shadow map.
+// Techniques: relief.self-shadow
+
+#include "lib/view.glsl"
+#include "light_gpu.h"
+
+layout(binding = kLightsUnit) uniform samplerBuffer lights;  // LightRecord
+
+int light_count() {
+    return textureSize(lights) / int(kLightTexels);
+}
+
+// Index into the records, or -1.
+ivec2 key_lights() {
+    int local = int(view.grid_depth.w);
+    return ivec2(view.grid_depth.z > 0.0 ? 0 : -1, local < light_count() ? local : -1);
+}
+
+// Unit, from a point to a light; 0 for index -1.
+vec3 to_key_light(int index, vec3 position_ws) {
+    vec4 position = texelFetch(lights, max(index, 0) * int(kLightTexels));
+    vec3 to_light = float(index) < view.grid_depth.z ? position.xyz : position.xyz - position_ws;
+    return index >= 0 ? to_light * inversesqrt(max(dot(to_light, to_light), 1e-20)) : vec3(0.0);
+}
