@@ -102,9 +102,12 @@ int relief_steps(float most, float cosine) {
 }
 #endif
 
-// The outline of a relief without holes is that of its mesh: casters need no search.
-#if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER) && !defined(RELIEF_CLOSED) && !defined(RELIEF_CURVED)
+#if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER)
+#define RELIEF_ONLY_HOLES
+// The outline of a relief without holes is that of its mesh: it needs no search.
+#if !defined(RELIEF_CLOSED) && !defined(RELIEF_CURVED)
 #define RELIEF_SKIPPED
+#endif
 #endif
 
 void relief_uv(inout vec4 uv) {
@@ -144,16 +147,23 @@ void relief_uv(inout vec4 uv) {
         map_coordinates(kReliefSlot, uv), map_gradient(kReliefSlot, travel), limited * range.x / depth,
         fall * range.x * range.x / depth);
     int steps = relief_steps(search.y, down);
+    int refinements = int(search.z);
+#ifdef RELIEF_ONLY_HOLES
+    refinements = 0;
+#ifdef RELIEF_CURVED
+    steps = range.y > 0.0 ? 0 : steps;  // it hits the bottom at the latest
+#endif
+#endif
 #if defined(RELIEF_SKIPPED)
     float x = 1.0;
 #elif defined(RELIEF_CONES)
-    float x = relief_search_cones(ray, steps, int(search.z));
+    float x = relief_search_cones(ray, steps, refinements);
 #elif defined(RELIEF_LINEAR)
     float x = relief_search_linear(ray, steps);
 #elif defined(RELIEF_CLOSED)
-    float x = relief_search(ray, steps, int(search.z), true);
+    float x = relief_search(ray, steps, refinements, true);
 #else
-    float x = relief_search(ray, steps, int(search.z), false);
+    float x = relief_search(ray, steps, refinements, false);
 #endif
 #if defined(RELIEF_CLOSED)
     surface_hole = x > 1.0;
@@ -163,7 +173,7 @@ void relief_uv(inout vec4 uv) {
     if (is_back) {
         return;
     }
-#if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER)
+#ifdef RELIEF_ONLY_HOLES
     x = 1.0;
 #endif
     x = min(x, 1.0);
@@ -220,9 +230,10 @@ float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
     vec4 travel = relief_travel(frame, length * (to_light - up * frame.normal));
     ReliefRay ray = relief_light_ray(
         map_coordinates(kReliefSlot, relief_found_uv), map_gradient(kReliefSlot, travel), limited, fall, length, relief);
-    float steps = float(relief_steps(search.y, limited)) * relief_found;
-    float visible = relief_visibility(ray, relief_found, int(steps) + 2, kReliefIsClosed);
-    return up > 0.0 ? visible : 0.0;
+    float steps = 0.5 * float(relief_steps(search.y, limited)) * relief_found;  // an edge may be late
+    bool lit = up > 0.0 && relief_found > kReliefShadowThreshold;
+    float visible = relief_visibility(ray, relief_found, lit ? int(steps) + 2 : 0, kReliefIsClosed);
+    return up >= 0.0 ? visible : 0.0;
 }
 #endif
 
@@ -232,7 +243,7 @@ void relief_sample(inout SurfaceSample s, vec3 smooth_normal) {
     ReliefFrame frame = relief_frame(normalize(normal_ws));
     vec3 position_ws = relief_position.xyz + view.camera_ws.xyz + surface_offset;
     ivec2 keys = key_lights();
-    s.key_visibility.x = keys.x >= 0 ? relief_light(frame, search, to_key_light(keys.x, position_ws)) : 1.0;
-    s.key_visibility.y = keys.y >= 0 ? relief_light(frame, search, to_key_light(keys.y, position_ws)) : 1.0;
+    s.key_visibility.x = relief_light(frame, search, to_key_light(keys.x, position_ws));
+    s.key_visibility.y = relief_light(frame, search, to_key_light(keys.y, position_ws));
 #endif
 }
