@@ -210,6 +210,38 @@ DetailReport bake_row(
 
 }  // namespace
 
+DetailRelief make_relief(const DetailBake& bake) {
+    constexpr float kLeast = 1e-6f;  // of the distance: where both meshes coincide
+    float low = INFINITY;
+    float high = -INFINITY;
+    for (const Vec4& texel : bake.height.texels) {
+        low = std::min(low, texel.x);
+        high = std::max(high, texel.x);
+    }
+    const auto meters = [&](float stored) { return (2 * stored - 1) * bake.distance; };
+    DetailRelief relief = {
+        .map = bake.normal,
+        .raised = meters(high),
+        .depth = std::max(meters(high) - meters(low), kLeast * bake.distance)};
+    for (std::size_t i = 0; i < relief.map.texels.size(); ++i) {
+        const float depth = (relief.raised - meters(bake.height.texels[i].x)) / relief.depth;
+        relief.map.texels[i].w = std::clamp(depth, 0.0f, 1.0f);
+    }
+    return relief;
+}
+
+void move_out(MeshData& mesh, float distance) {
+    const std::vector<Vec3> cage = cage_normals(mesh);
+    mesh.bounds = {};
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        mesh.positions[v] += distance * cage[v];
+        if (is_finite(mesh.positions[v])) {
+            grow(mesh.bounds, mesh.positions[v]);
+        }
+    }
+    ++mesh.version;
+}
+
 Vec3 in_tangent_frame(const Vec3& n, const Vec3& normal, const Vec4& tangent) {
     const Vec3 t(tangent);
     const float sign = tangent.w < 0 ? -1.0f : 1.0f;
@@ -298,6 +330,7 @@ Result<DetailBake> bake_detail(
     if (settings.occlusion_rays > 0) {
         bake.occlusion = make_baked_map(settings.width, settings.height, Vec4(1));
     }
+    bake.distance = baker.distance;
     std::vector<std::uint8_t> covered(bake.normal.texels.size(), 0);
     std::vector<DetailReport> reports(static_cast<std::size_t>(settings.height));
     bake_rows(settings.height, progress, [&](int y) {

@@ -54,13 +54,28 @@ struct DetailBake {
     BakedMap height;  ///< R: distance of the high mesh along the cage normal, 0.5 at 0, 0 and 1 at
                       ///< the search distance
     BakedMap occlusion = {};  ///< R; empty without rays
+    float distance = 0;       ///< that of the search [m]
     DetailReport report = {};
+};
+
+/// A relief map (relief.map-format) for the low mesh moved out along its cage normals.
+struct DetailRelief {
+    BakedMap map;      ///< RGB: the normal; A: depth, 0 on the moved mesh and 1 deepest
+    float raised = 0;  ///< by which the mesh is moved out [m]
+    float depth = 0;   ///< of the relief [m], > 0
 };
 
 /// `low` has uvs, normals and tangents for them. Fails where it has no chart.
 [[nodiscard]] Result<DetailBake> bake_detail(
     const MeshData& low, const MeshData& high, const DetailSettings& settings,
     const RowProgress& progress = {});
+
+/// The relief of a bake in tangent space: the mesh is moved out just so far that all of the high
+/// mesh is below it.
+[[nodiscard]] DetailRelief make_relief(const DetailBake& bake);
+
+/// Moves the vertices of a mesh along their cage normals [m].
+void move_out(MeshData& mesh, float distance);
 
 /// (x, y, z) with n = x T + y w cross(N, T) + z N, of unit length; (0, 0, 1) for a degenerate
 /// frame.

@@ -392,6 +392,40 @@ TEST_CASE("detail bake: occlusion is 1 in the open and about 1/2 beside a high w
     CHECK(near.occlusion.texels[near.occlusion.at(2, 16)].x == 1);
 }
 
+TEST_CASE(
+    "detail bake: the mesh of a relief is moved out until the high mesh is below it, depth by depth"
+    * technique("bump.nm-detail-recovery")) {
+    const MeshData low = make_square(0);
+    MeshData high = make_square(0);
+    high.positions[1].z = 0.08f;  // the right edge is high, the left one is low
+    high.positions[3].z = 0.08f;
+    high.positions[0].z = -0.02f;
+    high.positions[2].z = -0.02f;
+    const DetailBake baked = bake(low, high, kSmall);
+    const DetailRelief relief = make_relief(baked);
+    CHECK(relief.raised == doctest::Approx(0.08).epsilon(0.02));
+    CHECK(relief.depth == doctest::Approx(0.1).epsilon(0.02));
+    for (int x = 0; x < kSmall.width; ++x) {
+        const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(kSmall.width);
+        const float height = -0.02f + 0.1f * u;
+        const Vec4& texel = relief.map.texels[relief.map.at(x, kSmall.height / 2)];
+        CAPTURE(u);
+        CHECK(std::abs(relief.raised - texel.w * relief.depth - height) < 1e-4f);
+        CHECK(Vec3(texel) == Vec3(baked.normal.texels[baked.normal.at(x, kSmall.height / 2)]));
+    }
+    MeshData moved = low;
+    move_out(moved, relief.raised);
+    for (std::size_t v = 0; v < moved.positions.size(); ++v) {
+        CHECK(moved.positions[v] == low.positions[v] + Vec3(0, 0, relief.raised));
+    }
+    CHECK(moved.bounds.max.z == relief.raised);
+    // Both the same: a relief of hardly any depth, not 0 / 0.
+    const DetailRelief none = make_relief(bake(low, low, kSmall));
+    CHECK(none.depth > 0);
+    CHECK(none.raised == 0.0f);
+    CHECK(std::isfinite(none.map.texels[0].w));
+}
+
 TEST_CASE("detail bake: charts are dilated by the padding and no further") {
     MeshData low = make_square(0);
     for (Vec2& uv : low.uvs) {

@@ -16,6 +16,31 @@ TEST_CASE("gltf: the square that the other tests spoil is fine") {
     CHECK(scene->warnings.empty());
 }
 
+TEST_CASE("gltf: bad fields in extras.limn of a material cost these, and the rest is drawn") {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"({"detail": "deep"})", "materials[0].extras.limn.detail: found the string \"deep\""},
+        {R"({"relief_depth": -1})",
+         "materials[0].extras.limn.relief_depth: found the number -1, expected a number 0 .. 1000 "
+         "m; drawn without"},
+        {"7", "materials[0].extras.limn: found the number 7, expected an object with fields of a "
+              "material; drawn without"},
+        {R"({"relief_texture": {"index": 0}})",
+         "materials[0]: extras.limn.relief_texture: found no index of a texture"},
+        {R"({"relief_texture": 1e30})",
+         "materials[0]: extras.limn.relief_texture: found no index of a texture"}};
+    for (const auto& [extras, expected] : cases) {
+        const std::string json = replace_once(
+            kSquareJson, R"("name": "paint")",
+            R"("doubleSided": true, "extras": {"limn": )" + std::string(extras) + "}");
+        const auto scene = parse_gltf(make_glb(json, square_binary()), "square.glb", "");
+        REQUIRE(scene.ok());
+        REQUIRE(scene->warnings.size() == 1);
+        CHECK_MESSAGE(mentions(scene->warnings[0], expected), scene->warnings[0]);
+        CHECK(scene->materials[0].double_sided);
+        CHECK(scene->materials[0].detail == SurfaceDetail::Normal);
+    }
+}
+
 TEST_CASE("gltf: a bad part of a material, camera or light costs that part") {
     check_all_drawn({
         {R"("name": "paint")", R"("name": 7)",

@@ -315,6 +315,35 @@ TEST_CASE("gltf write: images, textures and how they are placed come back") {
     CHECK(read.occlusion_strength == 0.5f);
 }
 
+TEST_CASE("gltf write: relief comes back, in extras that other programs ignore") {
+    GltfScene scene = make_scene();
+    ImageData& image = scene.images.emplace_back();
+    image.name = "relief";
+    image.width = 2;
+    image.height = 1;
+    image.pixels = {128, 128, 255, 0, 100, 120, 250, 77};
+    Material& material = scene.materials[0];
+    material.detail = SurfaceDetail::Silhouette;
+    material.relief_depth = 0.0123f;
+    material.relief_steps = 40;
+    material.relief_shadow = ReliefShadow::Ray;
+    material.relief_texture.image = {0};
+    material.relief_texture.scale = {2, 3};
+    const auto bytes = write_glb(scene);
+    REQUIRE(bytes.ok());
+    const auto parsed = parse_gltf(*bytes, "scene.glb", "");
+    REQUIRE(parsed.ok());
+    REQUIRE(parsed->warnings.empty());
+    const Material& read = parsed->materials[0];
+    CHECK(read.detail == SurfaceDetail::Silhouette);
+    CHECK(read.relief_depth == 0.0123f);
+    CHECK(read.relief_steps == 40);
+    CHECK(read.relief_shadow == ReliefShadow::Ray);
+    CHECK(read.relief_refinements == Material{}.relief_refinements);
+    CHECK(read.relief_texture.scale == Vec2(2, 3));
+    CHECK(parsed->images[read.relief_texture.image.index].pixels == image.pixels);
+}
+
 TEST_CASE("gltf write: a file is complete or not there") {
     const test::TemporaryFolder folder;
     CHECK_FALSE(save_glb(folder.file("none/a.glb"), make_scene()).ok());

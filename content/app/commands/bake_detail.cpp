@@ -29,6 +29,7 @@ struct DetailRecipe {
     int rays = 32;
     float reach = 0.1f;
     int bits = 8;
+    bool relief = false;
 };
 
 LIMN_FIELDS(DetailRecipe) {
@@ -42,6 +43,10 @@ LIMN_FIELDS(DetailRecipe) {
     LIMN_FIELD(rays, "per sample, for occlusion; 0: none", "", 0, 4096);
     LIMN_FIELD(reach, "length of those, of the low mesh's diagonal", "", 1e-4, 100);
     LIMN_FIELD(bits, "of the values in a PNG file, 8 or 16", "", 8, 16);
+    LIMN_FIELD(
+        relief,
+        "also a relief map, and a model whose outline is that of the high mesh: its mesh is moved "
+        "out until the high mesh lies below it");
 }
 
 namespace {
@@ -84,8 +89,19 @@ ImageData image_of_map(const BakedMap& map, std::string name) {
     return image;
 }
 
+void add_relief(const DetailRelief& relief, const std::string& name, GltfScene& scene) {
+    Material& material = scene.materials.front();
+    material.detail = SurfaceDetail::Silhouette;
+    material.relief_depth = relief.depth;
+    material.relief_steps = 40;
+    material.relief_shadow = ReliefShadow::Ray;
+    material.relief_texture.image = {static_cast<std::uint32_t>(scene.images.size())};
+    scene.images.push_back(image_of_map(relief.map, name + "_relief"));
+}
+
 /// The low mesh with its maps.
-GltfScene model_with_maps(MeshData mesh, const DetailBake& bake, const std::string& name) {
+GltfScene model_with_maps(
+    MeshData mesh, const DetailBake& bake, const DetailRelief* relief, const std::string& name) {
     GltfScene scene;
     scene.name = name;
     Material material;
@@ -99,6 +115,10 @@ GltfScene model_with_maps(MeshData mesh, const DetailBake& bake, const std::stri
         scene.images.push_back(image_of_map(bake.occlusion, name + "_occlusion"));
     }
     scene.materials.push_back(std::move(material));
+    if (relief != nullptr) {
+        add_relief(*relief, name, scene);
+        move_out(mesh, relief->raised);
+    }
     mesh.name = name;
     scene.meshes.push_back(std::move(mesh));
     GltfNode node;
@@ -162,7 +182,15 @@ Status bake_detail_maps(const BakeOptions& options) {
     }
     const std::string stem = options.out.substr(0, options.out.rfind('.'));
     const std::string name = stem.substr(stem.find_last_of('/') + 1);
-    return save_glb(stem + ".glb", model_with_maps(std::move(low), bake, name));
+    if (!recipe.relief) {
+        return save_glb(stem + ".glb", model_with_maps(std::move(low), bake, nullptr, name));
+    }
+    const DetailRelief relief = make_relief(bake);
+    LIMN_TRY(write_map(with_ending(options.out, "relief"), relief.map, 4, recipe.bits));
+    log_info(
+        "{}: the relief is {} m deep below the mesh, which is moved out by {} m", options.out,
+        fmt::format("{:.4g}", relief.depth), fmt::format("{:.4g}", relief.raised));
+    return save_glb(stem + ".glb", model_with_maps(std::move(low), bake, &relief, name));
 }
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "content/load/gltf/gltf_document.h"
 #include "content/load/gltf/gltf_glossiness.h"
 #include "content/load/gltf/gltf_layers.h"
+#include "content/load/gltf/gltf_material_extras.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
 
@@ -108,6 +109,7 @@ class MaterialBuilder {
             add_layers(source.extensions, material);
         }
         transmit(source.extensions, material);
+        add_extras(index, material);
         return material;
     }
 
@@ -123,6 +125,38 @@ class MaterialBuilder {
                 "{}.emissiveFactor: found {:.6g}, expected at most 1; it is used as it is", where_,
                 *largest));
         }
+    }
+
+    void add_extras(std::size_t index, Material& material) {
+        const JsonValue* const limn = extras_of(document_, "materials", index).find("limn");
+        if (limn == nullptr) {
+            return;
+        }
+        const tinygltf::Value& source = document_.model.materials[index].extras.Get("limn");
+        Material with = material;
+        const Status read = read_material_extras(
+            *limn, {document_.file, fmt::format("materials[{}].extras.limn", index)},
+            [&](const std::string& name) { return extra_slot(source, name); }, with);
+        if (read) {
+            material = std::move(with);
+        } else {
+            document_.warnings.push_back(read.error().message + "; drawn without");
+        }
+    }
+
+    /// Of extras, which no schema has checked.
+    TextureSlot extra_slot(const tinygltf::Value& limn, const std::string& name) {
+        const tinygltf::Value& index = member_of(member_of(limn, name.c_str()), "index");
+        const double found = index.IsNumber() ? index.GetNumberAsDouble() : -1;
+        if (!(found >= 0 && found < static_cast<double>(document_.model.textures.size()))) {
+            warn(fmt::format(
+                "extras.limn.{}: found no index of a texture, expected {{\"index\": 0}} or the "
+                "like; "
+                "drawn without",
+                name));
+            return {};
+        }
+        return slot(texture_of(limn, name.c_str()), false);
     }
 
     void read_glossiness(const tinygltf::Value& source, std::uint32_t index, Material& material) {

@@ -3,6 +3,7 @@
 #include "content/load/files/atomic_file.h"
 #include "content/load/gltf/gltf_file.h"
 #include "content/load/gltf/gltf_layers.h"
+#include "content/load/gltf/gltf_material_extras.h"
 #include "content/load/gltf/gltf_write_textures.h"
 #include "ecs/base/text.h"
 
@@ -490,8 +491,30 @@ class GlbWriter {
         write_texture(source.occlusion_texture, material.occlusionTexture);
         material.occlusionTexture.strength = source.occlusion_strength;
         write_texture(source.emission_texture, material.emissiveTexture);
+        add_extras(source, material);
         model_.materials.push_back(std::move(material));
         return Done{};
+    }
+
+    void add_extras(const Material& source, tinygltf::Material& material) {
+        tinygltf::Value::Object limn =
+            write_material_extras(source, [this](const TextureSlot& slot) {
+                tinygltf::TextureInfo info;
+                write_texture(slot, info);
+                tinygltf::Value::Object written = {
+                    {"index", tinygltf::Value(info.index)},
+                    {"texCoord", tinygltf::Value(info.texCoord)}};
+                if (!info.extensions.empty()) {
+                    tinygltf::Value::Object extensions(
+                        info.extensions.begin(), info.extensions.end());
+                    written.emplace("extensions", tinygltf::Value(std::move(extensions)));
+                }
+                return tinygltf::Value(std::move(written));
+            });
+        if (!limn.empty()) {
+            material.extras = tinygltf::Value(
+                tinygltf::Value::Object{{"limn", tinygltf::Value(std::move(limn))}});
+        }
     }
 
     template <typename Info>
