@@ -72,6 +72,11 @@ const bool kReliefIsClosed = true;
 const bool kReliefIsClosed = false;
 #endif
 
+// Depth of the relief in the world [m], > 0.
+float relief_meters(vec4 search) {
+    return max(search.x * relief_position.w, 1e-6);
+}
+
 // The visible point that the search found.
 float relief_found = 0.0;  // its depth, of that of the relief; 0: on the mesh
 vec4 relief_found_uv;
@@ -113,7 +118,7 @@ int relief_steps(float most, float cosine) {
 void relief_uv(inout vec4 uv) {
 #if defined(RELIEF) && !defined(RELIEF_BUMP)
     vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
-    float depth = search.x * relief_position.w;
+    float depth = relief_meters(search);
     vec3 position_ws = relief_position.xyz + view.camera_ws.xyz;
     vec4 clip = view.clip_from_world * vec4(position_ws, 1.0);
     vec3 ray_ws = ray_through(position_ws, clip);
@@ -222,7 +227,7 @@ void relief_normal(inout vec3 normal) {
 #if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS)
 // The fraction of the light from a direction that the relief lets through to the point that the search found.
 float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
-    float relief = search.x * relief_position.w;
+    float relief = relief_meters(search);
     float up = dot(to_light, frame.normal);
     float limited = max(up, kMinReliefCosine);
     float fall = relief_fall(to_light, frame.normal);
