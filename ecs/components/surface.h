@@ -228,6 +228,7 @@ struct Material {
     float attenuation_distance = 1.0f;
     float clearcoat = 0.0f;
     float clearcoat_roughness = 0.0f;
+    float clearcoat_normal_scale = 1.0f;
     Vec3 sheen = {0, 0, 0};
     float sheen_roughness = 0.0f;
     float specular_weight = 1.0f;
@@ -341,6 +342,7 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(
         clearcoat, "fraction of the surface under a clear coat of refractive index 1.5", "", 0, 1);
     LIMN_FIELD(clearcoat_roughness, "perceptual roughness of the clear coat", "", 0, 1);
+    LIMN_FIELD(clearcoat_normal_scale, "strength of the normal map of the clear coat", "", -10, 10);
     LIMN_FIELD(
         sheen, .doc = "color of light that fibers scatter at grazing angles, as of velvet",
         .min = 0, .max = 1, .color = true);

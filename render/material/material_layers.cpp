@@ -44,9 +44,10 @@ std::optional<layout::LayersBlock> make_layers_block(const Material& m) {
         .specular = Vec4(head_on * m.specular_tint, m.specular_weight),
         .coat = {m.clearcoat, m.clearcoat_roughness, m.anisotropy, m.iridescence},
         .sheen = Vec4(m.sheen, m.sheen_roughness),
-        .film = {
-            m.iridescence_index, has_range ? thickness.x : thickness.y, thickness.y,
-            m.anisotropy_rotation}};
+        .film =
+            {m.iridescence_index, has_range ? thickness.x : thickness.y, thickness.y,
+             m.anisotropy_rotation},
+        .coat_normal = {m.clearcoat_normal_scale, 0, 0, 0}};
 }
 
 void add_layers(Variant& variant, MaterialLayers layers) {

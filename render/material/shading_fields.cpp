@@ -41,6 +41,7 @@ constexpr FieldReaders kFieldReaders[] = {
     {"hair_scatter", kHair},
     {"clearcoat", kLayers},
     {"clearcoat_roughness", kLayers},
+    {"clearcoat_normal_scale", kLayers},
     {"clearcoat_texture", kLayers},
     {"clearcoat_roughness_texture", kLayers},
     {"clearcoat_normal_texture", kLayers},

@@ -11,6 +11,7 @@ struct LayersBlock {
     vec4 coat;      // clear coat, its roughness; z: anisotropy, w: iridescence
     vec4 sheen;     // w: roughness
     vec4 film;      // refractive index, thickness [nm] where its map is 0 and 1; w: rotation of the anisotropy [rad]
+    vec4 coat_normal;  // x: strength of its map
 };
 
 // Bindings.

@@ -125,11 +125,36 @@ TEST_CASE("gltf layers: colors are sRGB, other maps are data, each with its tran
         CHECK(scene->warnings.empty());
         REQUIRE(scene->images.size() == 1);
         CHECK(scene->images[0].srgb == (member.find("ColorTexture") != member.npos));
-        const TextureSlot& slot = scene->materials[0].*map.second;
-        CHECK(slot.image.index == 0);
-        CHECK(slot.uv_set == 1);
-        CHECK(slot.scale == Vec2(2, 3));
+        const auto bytes = write_glb(*scene);
+        REQUIRE(bytes.ok());
+        const Result<GltfScene> written = parse_gltf(*bytes, "written.glb", "");
+        REQUIRE(written.ok());
+        CHECK(written->warnings.empty());
+        for (const GltfScene* const read : {&*scene, &*written}) {
+            const TextureSlot& slot = read->materials[0].*map.second;
+            CHECK(slot.image.index == 0);
+            CHECK(slot.uv_set == 1);
+            CHECK(slot.scale == Vec2(2, 3));
+        }
     }
+}
+
+TEST_CASE("gltf layers: the strength of the clear coat's normal map is read, and written again") {
+    const std::string json = replace_once(
+        kSquareJson, R"([{"name": "paint"}])",
+        R"([{"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1,
+        "clearcoatNormalTexture": {"index": 0, "scale": -0.5}}}}],
+        "textures": [{"source": 0}], "images": [{"uri": )"
+            + std::string(kImage) + "}]");
+    const Result<GltfScene> scene = parse_gltf(make_glb(json, square_binary()), "square.glb", "");
+    REQUIRE(scene.ok());
+    CHECK(scene->warnings.empty());
+    CHECK(scene->materials[0].clearcoat_normal_scale == -0.5f);
+    const auto bytes = write_glb(*scene);
+    REQUIRE(bytes.ok());
+    const Result<GltfScene> written = parse_gltf(*bytes, "written.glb", "");
+    REQUIRE(written.ok());
+    CHECK(written->materials[0].clearcoat_normal_scale == -0.5f);
 }
 
 TEST_CASE("gltf layers: a bad part costs that part") {

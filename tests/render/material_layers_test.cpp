@@ -252,6 +252,29 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "material layers: the strength of the coat's normal map is that of its slope"
+    * technique("shade.clear-coat")) {
+    Plate plate;
+    Material coated = {.base_color = {0, 0, 0, 1}, .roughness = 0.9f, .clearcoat = 1};
+    const gpu::FloatImage flat = plate.picture(coated);
+    // Half the slope of a texel is another texel: (0.6, 0, 0.8) leans by 3/4, and (3/8, 0, 1) by
+    // 3/8.
+    const TextureSlot steep =
+        crisp(plate.add(two_texels({204, 128, 230, 255, 204, 128, 230, 255})));
+    const TextureSlot half = crisp(plate.add(two_texels({173, 128, 247, 255, 173, 128, 247, 255})));
+    coated.clearcoat_normal_texture = half;
+    const gpu::FloatImage leaning = plate.picture(coated);
+    CHECK(largest_difference(leaning, flat) > 0.01f);
+    coated.clearcoat_normal_texture = steep;
+    coated.clearcoat_normal_scale = 0.5f;
+    CHECK(
+        largest_difference(plate.picture(coated), leaning)
+        < 0.1f * largest_difference(leaning, flat));
+    coated.clearcoat_normal_scale = 0;
+    CHECK(largest_difference(plate.picture(coated), flat) < 1e-3f);
+}
+
+TEST_CASE(
     "material layers: in a white furnace no surface is brighter than its surroundings"
     * technique("shade.clear-coat, shade.sheen, shade.dielectric-specular, "
                 "shade.anisotropic-specular, shade.thin-film")) {

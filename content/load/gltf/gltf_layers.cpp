@@ -68,7 +68,7 @@ void read_layer_factors(const tinygltf::ExtensionMap& extensions, Material& mate
     thickness = {number_of(film, kThinnest, thickness.x), number_of(film, kThickest, thickness.y)};
 }
 
-tinygltf::ExtensionMap write_layer_factors(const Material& material) {
+tinygltf::ExtensionMap write_layers(const Material& material, const TextureWriter& texture) {
     const Material standard;
     std::map<std::string, tinygltf::Value::Object> objects;
     const auto write = [&](const char* extension, const char* member, const auto& value,
@@ -93,6 +93,20 @@ tinygltf::ExtensionMap write_layer_factors(const Material& material) {
         write("KHR_materials_volume", "attenuationColor", material.attenuation_color, Vec3(1));
         write("KHR_materials_volume", "attenuationDistance", material.attenuation_distance, 0.0f);
     }
+    const auto write_map = [&](const char* extension, const char* member, const TextureSlot& slot) {
+        if (slot.image.index == kNoAsset) {
+            return;
+        }
+        tinygltf::Value::Object info = texture(slot);
+        if (&slot == &material.clearcoat_normal_texture && material.clearcoat_normal_scale != 1) {
+            info.emplace("scale", to_value(material.clearcoat_normal_scale));
+        }
+        objects[extension].emplace(member, tinygltf::Value(std::move(info)));
+    };
+    for (const LayerTexture& map : kLayerTextures) {
+        write_map(map.extension, map.member, material.*map.slot);
+    }
+    write_map("KHR_materials_volume", "thicknessTexture", material.thickness_texture);
     tinygltf::ExtensionMap extensions;
     for (auto& [name, object] : objects) {
         extensions.emplace(name, tinygltf::Value(std::move(object)));

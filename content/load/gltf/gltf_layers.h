@@ -4,10 +4,15 @@
 
 #include <tiny_gltf.h>
 
+#include <functional>
+
 namespace limn {
 
 // Extensions of materials whose members are fields of Material with the same meaning and default:
 // KHR_materials_clearcoat, _sheen, _specular, _anisotropy, _iridescence and _dispersion.
+
+/// Makes a textureInfo of a slot that has an image.
+using TextureWriter = std::function<tinygltf::Value::Object(const TextureSlot& slot)>;
 
 /// A texture of one of them.
 struct LayerTexture {
@@ -46,8 +51,9 @@ inline constexpr TextureSlot Material::*kGltfSlots[] = {
 /// Sets the fields of the factors in these extensions.
 void read_layer_factors(const tinygltf::ExtensionMap& extensions, Material& material);
 
-/// The extensions with the factors of `material` that are not the default, also those of clear
-/// media.
-[[nodiscard]] tinygltf::ExtensionMap write_layer_factors(const Material& material);
+/// The extensions with the factors of `material` that are not the default and with its maps, also
+/// those of clear media; `texture` writes a textureInfo.
+[[nodiscard]] tinygltf::ExtensionMap
+write_layers(const Material& material, const TextureWriter& texture);
 
 }  // namespace limn

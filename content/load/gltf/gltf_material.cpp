@@ -176,9 +176,7 @@ class MaterialBuilder {
         }
         const tinygltf::Value& normals = member_of(
             extension_of(extensions, "KHR_materials_clearcoat"), "clearcoatNormalTexture");
-        if (const float scale = number_of(normals, "scale", 1); scale != 1) {
-            warn(fmt::format("clearcoatNormalTexture.scale {:.3g} is drawn as 1", scale));
-        }
+        material.clearcoat_normal_scale = std::clamp(number_of(normals, "scale", 1), -10.0f, 10.0f);
     }
 
     /// An opaque material. The index 0 stands for a reflectance of 1 at normal incidence.

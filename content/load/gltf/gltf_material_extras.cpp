@@ -63,9 +63,8 @@ Status read_material_extras(
     return read_struct(plain, material, location, {});
 }
 
-tinygltf::Value::Object write_material_extras(
-    const Material& material,
-    const std::function<tinygltf::Value(const TextureSlot& slot)>& texture) {
+tinygltf::Value::Object
+write_material_extras(const Material& material, const TextureWriter& texture) {
     const Material plain;
     tinygltf::Value::Object extras;
     for (const char* const name : kWrittenFields) {
@@ -76,7 +75,7 @@ tinygltf::Value::Object write_material_extras(
         }
     }
     if (material.relief_texture.image.index != kNoAsset) {
-        extras.emplace("relief_texture", texture(material.relief_texture));
+        extras.emplace("relief_texture", tinygltf::Value(texture(material.relief_texture)));
     }
     return extras;
 }

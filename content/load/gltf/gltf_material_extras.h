@@ -1,7 +1,7 @@
 #pragma once
 
 #include "content/load/files/json_document.h"
-#include "content/load/gltf/gltf_file.h"
+#include "content/load/gltf/gltf_layers.h"
 #include "content/load/level/component_json.h"
 #include "ecs/base/result.h"
 #include "ecs/components/surface.h"
@@ -25,8 +25,7 @@ namespace limn {
 
 /// The fields of surface detail that differ from those of a new material; `texture` writes a
 /// textureInfo. Empty: none differs.
-[[nodiscard]] tinygltf::Value::Object write_material_extras(
-    const Material& material,
-    const std::function<tinygltf::Value(const TextureSlot& slot)>& texture);
+[[nodiscard]] tinygltf::Value::Object
+write_material_extras(const Material& material, const TextureWriter& texture);
 
 }  // namespace limn

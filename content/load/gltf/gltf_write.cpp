@@ -471,7 +471,7 @@ class GlbWriter {
         if (source.shading == ShadingModel::Unlit) {
             use(material, "KHR_materials_unlit", {});
         } else {
-            for (const auto& [name, values] : write_layer_factors(source)) {
+            for (const auto& [name, values] : write_layers(source, texture_writer())) {
                 material.extensions.emplace(name, values);
                 extensions_.insert(name);
             }
@@ -497,24 +497,27 @@ class GlbWriter {
     }
 
     void add_extras(const Material& source, tinygltf::Material& material) {
-        tinygltf::Value::Object limn =
-            write_material_extras(source, [this](const TextureSlot& slot) {
-                tinygltf::TextureInfo info;
-                write_texture(slot, info);
-                tinygltf::Value::Object written = {
-                    {"index", tinygltf::Value(info.index)},
-                    {"texCoord", tinygltf::Value(info.texCoord)}};
-                if (!info.extensions.empty()) {
-                    tinygltf::Value::Object extensions(
-                        info.extensions.begin(), info.extensions.end());
-                    written.emplace("extensions", tinygltf::Value(std::move(extensions)));
-                }
-                return tinygltf::Value(std::move(written));
-            });
+        tinygltf::Value::Object limn = write_material_extras(source, texture_writer());
         if (!limn.empty()) {
             material.extras = tinygltf::Value(
                 tinygltf::Value::Object{{"limn", tinygltf::Value(std::move(limn))}});
         }
+    }
+
+    /// For textures that tinygltf does not know.
+    TextureWriter texture_writer() {
+        return [this](const TextureSlot& slot) {
+            tinygltf::TextureInfo info;
+            write_texture(slot, info);
+            tinygltf::Value::Object written = {
+                {"index", tinygltf::Value(info.index)},
+                {"texCoord", tinygltf::Value(info.texCoord)}};
+            if (!info.extensions.empty()) {
+                tinygltf::Value::Object extensions(info.extensions.begin(), info.extensions.end());
+                written.emplace("extensions", tinygltf::Value(std::move(extensions)));
+            }
+            return written;
+        };
     }
 
     template <typename Info>

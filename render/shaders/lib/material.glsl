@@ -209,8 +209,9 @@ SurfaceLayers surface_layers(vec3 normal) {
     SurfaceLayers layers = plain_layers(normal);
     layers.coat_normal_ws = from_tangent_space(vec3(0.0, 0.0, 1.0));
 #ifdef CLEARCOAT_NORMAL_MAP
-    layers.coat_normal_ws = from_tangent_space(
-        MAP_TEXEL(CLEARCOAT_NORMAL_MAP, kClearcoatNormalSlot).xyz * 2.0 - 1.0);
+    vec3 coat_ts = MAP_TEXEL(CLEARCOAT_NORMAL_MAP, kClearcoatNormalSlot).xyz * 2.0 - 1.0;
+    coat_ts.xy *= block_texel(material_and_flags.x, kLayersBlock, 4).x;
+    layers.coat_normal_ws = from_tangent_space(coat_ts);
 #endif
 #ifdef CLEARCOAT_MAP
     layers.coat = MAP_TEXEL(CLEARCOAT_MAP, kClearcoatSlot).r;
