@@ -4,6 +4,7 @@
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/device.h"
 #include "render/material/material_pool.h"
+#include "render/material/relief_hook.h"
 
 #include <algorithm>
 #include <utility>
@@ -92,6 +93,12 @@ const gpu::Program* ProgramVariants::get(const Variant& variant, const SurfaceFe
     Variant whole = variant;
     add_features(whole, features);
     gpu::ProgramDesc desc = files_;
+    if (vertex_inputs_ && is_tessellated(features)) {
+        whole.add("TESSELLATED");
+        whole.add_if(device_->caps().software, "SMALL_PATCHES");
+        desc.evaluation = std::exchange(desc.vertex, "tessellated.vert");
+        desc.control = "tessellated.tesc";
+    }
     desc.defines = whole.definitions();
     const Result<const gpu::Program*> program = device_->shaders().load(desc);
     const Status fits = !program         ? program.error()

@@ -5,6 +5,13 @@
 #include "render/light/light_clusters.h"
 
 namespace limn {
+
+Vec4 tessellation_eye(const RenderView& camera) {
+    const auto& r = camera.world_from_camera.row;
+    const float pixels = static_cast<float>(camera.height) / (2 * camera.tangent.y);
+    return {r[0].w, r[1].w, r[2].w, pixels};
+}
+
 layout::ViewBlock make_view_block(
     const RenderView& camera, const ClusterShape& shape, const LightList& lights,
     bool infinite_viewer) {
@@ -25,6 +32,7 @@ layout::ViewBlock make_view_block(
     block.grid_depth = {
         shape.depth_scale, shape.depth_bias, lights.directional, lights.first_shadowed};
     block.clip_plane = camera.clip_plane;
+    block.tessellation = tessellation_eye(camera);
     return block;
 }
 

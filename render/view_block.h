@@ -10,6 +10,9 @@ struct LightList;
 struct RenderView;
 struct ViewData;
 
+/// ViewBlock::tessellation of a view.
+[[nodiscard]] Vec4 tessellation_eye(const RenderView& camera);
+
 /// The uniform block of lib/view.glsl.
 [[nodiscard]] layout::ViewBlock make_view_block(
     const RenderView& camera, const ClusterShape& shape, const LightList& lights,

@@ -4,6 +4,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
+#include "render/material/relief_hook.h"
 #include "render/shaders/instance_gpu.h"
 #include "render/skinning/deformed_list.h"
 
@@ -210,10 +211,11 @@ std::uint32_t InstanceCollector::level_of(
     const CasterVolume& volume) {
     const DrawState state = draw_state(block.keys[i]);
     const std::vector<CoarseRange>& coarse = mesh_of(items, state).coarse;
-    const bool holes = items.materials().batch(state.batch).features.has(kAlphaMask);
+    const SurfaceFeatures& features = items.materials().batch(state.batch).features;
     // Coarse levels are made of the rest mesh: they lack triangles where skin folds.
     const bool folded = state.deformed && items.shapes()[state.index].displacement > 0;
-    if (coarse.empty() || state.inflated || holes || folded) {
+    if (coarse.empty() || state.inflated || features.has(kAlphaMask) || is_tessellated(features)
+        || folded) {
         return 0;
     }
     const float scale2 = largest_scale2(block.now[i].world);

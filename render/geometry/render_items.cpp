@@ -8,6 +8,7 @@
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/material/material_pool.h"
+#include "render/material/relief_hook.h"
 #include "render/skinning/deformed_list.h"
 
 #include <algorithm>
@@ -53,11 +54,18 @@ Bounds RenderItemBlock::box(std::size_t i) const {
     return {boxes.center(i) - boxes.half(i), boxes.center(i) + boxes.half(i)};
 }
 
+Bounds
+RenderItems::moved_bounds(const RenderItemBlock& block, std::size_t i, const Bounds& box) const {
+    const std::uint32_t record = materials_->record_of(block.surfaces[i].material);
+    return inflated(
+        box, {.distance = std::abs(block.inflation(i)) + materials_->displacement_of(record)});
+}
+
 Bounds RenderItems::local_bounds(const RenderItemBlock& block, std::size_t i) const {
     const DrawState state = draw_state(block.keys[i]);
     const Bounds& box =
         state.deformed ? (*shapes_)[state.index].bounds : meshes_->meshes()[state.index].bounds;
-    return block.inflate.empty() ? box : inflated(box, block.inflate[i]);
+    return moved_bounds(block, i, box);
 }
 
 void RenderItems::update(
@@ -214,7 +222,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
         float det = 1;
         if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
             const Bounds& own = deformed ? (*shapes_)[shape].bounds : meshes[mesh].bounds;
-            const Bounds local = block.inflate.empty() ? own : inflated(own, block.inflate[i]);
+            const Bounds local = moved_bounds(block, i, own);
             const Affine a = block.world_at(i, time());
             const Vec3 box_center = transform_point(a, center(local));
             const Vec3 half = transform_half_extent(a, half_extent(local));
@@ -263,9 +271,10 @@ void RenderItems::hash_block(RenderItemBlock& block) const {
                                                            : 0;
         // Which fragments of such surfaces are drawn, and where, depends on the material itself.
         const SurfaceFeatures& features = materials_->batch(state.batch).features;
-        const bool cut = features.has(kAlphaMask) || is_off_mesh(features);
+        const bool by_material =
+            features.has(kAlphaMask) || is_off_mesh(features) || is_tessellated(features);
         const std::uint64_t what =
-            hash_combine(hash_combine(drawn, shape), cut ? materials_->revision() : 0);
+            hash_combine(hash_combine(drawn, shape), by_material ? materials_->revision() : 0);
         const Affine a = block.world_at(i, time());
         const float inflation = block.inflation(i);
         block.caster_hashes[i] =

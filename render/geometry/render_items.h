@@ -138,7 +138,7 @@ class RenderItems {
     /// Fills caster_hashes of all blocks.
     void hash_casters();
 
-    /// Bounds in mesh space, inflated and deformed. The mesh must exist.
+    /// Bounds in mesh space, inflated, displaced and deformed. The mesh must exist.
     [[nodiscard]] Bounds local_bounds(const RenderItemBlock& block, std::size_t i) const;
 
     // Of the last update().
@@ -158,6 +158,9 @@ class RenderItems {
     void use_copies(RenderItemBlock& block);
     void add_particles();
     void add_outlines();
+    /// `box` of a mesh, inflated and displaced.
+    [[nodiscard]] Bounds
+    moved_bounds(const RenderItemBlock& block, std::size_t i, const Bounds& box) const;
     void refresh(RenderItemBlock& block) const;
     void hash_block(RenderItemBlock& block) const;
 

@@ -57,11 +57,7 @@ void draw_depth(
         features.bits |= run.features.bits & kHoles;
         features.maps.add(run.features.maps, 1u << layout::kBaseColorSlot);
     }
-    const bool off_mesh = is_off_mesh(run.features);
-    if (off_mesh) {
-        add_off_mesh_hooks(features, run.features);
-        features.bits |= run.features.bits & (kUvMap | kUvMaps);
-    }
+    add_off_mesh_hooks(features, run.features);
     Variant variant;
     variant.add_if(state.clip, "CLIPPED");
     const gpu::Program* program = programs.get(variant, features);
@@ -69,7 +65,7 @@ void draw_depth(
         return;
     }
     context.device().use(gpu::Pipeline{program, state});
-    if (holes || off_mesh) {
+    if (features.maps != MapUnits{}) {
         view.frame->materials->bind_textures(run.textures);
     }
     draw_run(context.device(), *view.frame, list, run);
@@ -123,7 +119,9 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
 }
 
 SurfaceFeatures moving_features(const SurfaceFeatures& features) {
-    return {.bits = features.bits & kInflate, .hooks = moving_hooks(features.hooks)};
+    SurfaceFeatures moving = {.bits = features.bits & kInflate};
+    add_moving_hooks(moving, features);
+    return moving;
 }
 
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {

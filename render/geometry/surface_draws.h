@@ -3,6 +3,7 @@
 #include "render/frame_data.h"
 #include "render/geometry/instance_list.h"
 #include "render/light/light_objects.h"
+#include "render/material/material_pool.h"
 #include "render/material/surface_features.h"
 #include "render/variant.h"
 
@@ -108,6 +109,9 @@ void draw_motions(
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
             prepare(*program);
+            if (features.maps != MapUnits{}) {
+                view.frame->materials->bind_textures(run.textures);
+            }
             draw_run(context.device(), *view.frame, list, run);
         }
     }

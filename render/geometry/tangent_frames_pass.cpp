@@ -46,11 +46,15 @@ void TangentFramesEffect::draw(FrameGraph& graph, const FrameData& frame, ViewDa
             bind_view(context, view);
             bind_instances(context.device(), *view.frame, list);
             for (const DrawRun& run : list.opaque) {
-                const gpu::Program* program = programs.get({}, moving_features(run.features));
+                const SurfaceFeatures features = moving_features(run.features);
+                const gpu::Program* program = programs.get({}, features);
                 if (program != nullptr) {
                     context.device().use(
                         gpu::Pipeline{program, {.depth = {.write = false}, .cull = GL_NONE}});
                     program->set("axis_length", length);
+                    if (features.maps != MapUnits{}) {
+                        view.frame->materials->bind_textures(run.textures);
+                    }
                     draw_run(context.device(), *view.frame, list, run);
                 }
             }

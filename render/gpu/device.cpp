@@ -364,7 +364,8 @@ void Device::draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset,
     }
     check_draw();
     ++stats_.draws;
-    glMultiDrawElementsIndirect(mode, type, reinterpret_cast<const void*>(offset), count, 0);
+    const GLenum drawn = program_->is_tessellated() ? static_cast<GLenum>(GL_PATCHES) : mode;
+    glMultiDrawElementsIndirect(drawn, type, reinterpret_cast<const void*>(offset), count, 0);
 }
 
 void Device::draw_ids(int count) {

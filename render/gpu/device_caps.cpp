@@ -47,6 +47,7 @@ DeviceCaps read_device_caps() {
     caps.max_color_attachments =
         std::min(get_int(GL_MAX_COLOR_ATTACHMENTS), get_int(GL_MAX_DRAW_BUFFERS));
     caps.max_vertex_textures = get_int(GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS);
+    caps.max_evaluation_textures = get_int(GL_MAX_TESS_EVALUATION_TEXTURE_IMAGE_UNITS);
     caps.max_fragment_textures = get_int(GL_MAX_TEXTURE_IMAGE_UNITS);
     caps.max_compute_textures = get_int(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
     caps.max_combined_textures = get_int(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
@@ -89,11 +90,13 @@ check_requirements(const DeviceCaps& caps, const PassRequirements& needs) {
         }
     };
     compare("vertex textures", needs.vertex_textures, caps.max_vertex_textures);
+    compare("tessellation textures", needs.evaluation_textures, caps.max_evaluation_textures);
     compare("fragment textures", needs.fragment_textures, caps.max_fragment_textures);
     compare("compute textures", needs.compute_textures, caps.max_compute_textures);
     compare(
         "textures in all stages",
-        needs.vertex_textures + needs.fragment_textures + needs.compute_textures,
+        needs.vertex_textures + needs.evaluation_textures + needs.fragment_textures
+            + needs.compute_textures,
         caps.max_combined_textures);
     compare("color attachments", needs.color_attachments, caps.max_color_attachments);
     compare("pixels of texture side", needs.texture_size, caps.max_texture_size);

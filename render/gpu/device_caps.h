@@ -38,8 +38,9 @@ struct DeviceCaps {
     int max_cube_size = 0;
     int max_texture_layers = 0;
     int max_samples = 0;
-    int max_color_attachments = 0;  ///< per pass
-    int max_vertex_textures = 0;    ///< texture units of the stage
+    int max_color_attachments = 0;    ///< per pass
+    int max_vertex_textures = 0;      ///< texture units of the stage
+    int max_evaluation_textures = 0;  ///< of tessellation; 0: there is none
     int max_fragment_textures = 0;
     int max_compute_textures = 0;
     int max_combined_textures = 0;  ///< texture units of all stages together
@@ -64,6 +65,7 @@ struct DeviceCaps {
 /// Minimum limits that a pass requires; 0 = no requirement.
 struct PassRequirements {
     int vertex_textures = 0;
+    int evaluation_textures = 0;
     int fragment_textures = 0;
     int compute_textures = 0;
     int color_attachments = 0;

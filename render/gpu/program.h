@@ -50,6 +50,8 @@ class Program {
     [[nodiscard]] Status
     expect(BindingKind kind, std::string_view name, int binding, int size = 0) const;
 
+    /// Whether it draws patches of three vertices.
+    [[nodiscard]] bool is_tessellated() const { return tessellated_; }
     /// Location of a plain uniform, -1 if there is none of that name.
     [[nodiscard]] int find_uniform(std::string_view name) const;
     /// Set a plain uniform, which keeps its value until set again, across draws and reloads.
@@ -82,6 +84,7 @@ class Program {
     std::vector<ProgramInput> inputs_;
     std::vector<ProgramBinding> bindings_;
     std::vector<Uniform> uniforms_;  // sorted by name
+    bool tessellated_ = false;
 };
 
 /// A program with the state it draws with. The ShaderLibrary owns the program; its address is

@@ -79,7 +79,9 @@ std::string strip_comments(std::string_view text) {
 /// The parts of `desc` as "water.vert + water.frag".
 std::string describe(const ProgramDesc& desc) {
     std::string text;
-    for (const std::string* part : {&desc.vertex, &desc.geometry, &desc.fragment, &desc.compute}) {
+    for (const std::string* part :
+         {&desc.vertex, &desc.control, &desc.evaluation, &desc.geometry, &desc.fragment,
+          &desc.compute}) {
         if (!part->empty()) {
             text += (text.empty() ? "" : " + ") + *part;
         }
@@ -96,6 +98,10 @@ const char* file_extension(GLenum stage) {
     switch (stage) {
     case GL_VERTEX_SHADER:
         return "vert";
+    case GL_TESS_CONTROL_SHADER:
+        return "tesc";
+    case GL_TESS_EVALUATION_SHADER:
+        return "tese";
     case GL_GEOMETRY_SHADER:
         return "geom";
     case GL_FRAGMENT_SHADER:
@@ -134,8 +140,9 @@ void dump_sources(const ProgramDesc& desc, const StageSources& sources) {
 
 /// Too many textures in one stage are a capability or capacity error, by the device's limits.
 Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Program& program) {
-    constexpr std::array<std::pair<GLenum, int PassRequirements::*>, 3> kStages = {{
+    constexpr std::array<std::pair<GLenum, int PassRequirements::*>, 4> kStages = {{
         {GL_REFERENCED_BY_VERTEX_SHADER, &PassRequirements::vertex_textures},
+        {GL_REFERENCED_BY_TESS_EVALUATION_SHADER, &PassRequirements::evaluation_textures},
         {GL_REFERENCED_BY_FRAGMENT_SHADER, &PassRequirements::fragment_textures},
         {GL_REFERENCED_BY_COMPUTE_SHADER, &PassRequirements::compute_textures},
     }};
@@ -270,8 +277,10 @@ ReloadReport ShaderLibrary::reload(bool all) {
 
 Result<Program>
 ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& watched) const {
-    const std::array<std::pair<GLenum, const std::string*>, 4> stages = {{
+    const std::array<std::pair<GLenum, const std::string*>, 6> stages = {{
         {GL_VERTEX_SHADER, &desc.vertex},
+        {GL_TESS_CONTROL_SHADER, &desc.control},
+        {GL_TESS_EVALUATION_SHADER, &desc.evaluation},
         {GL_GEOMETRY_SHADER, &desc.geometry},
         {GL_FRAGMENT_SHADER, &desc.fragment},
         {GL_COMPUTE_SHADER, &desc.compute},
@@ -305,7 +314,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
 
     std::vector<Shader> shaders;
     for (const auto& [stage, source] : sources) {
-        if (stage == GL_VERTEX_SHADER && desc.geometry.empty()
+        if (stage == GL_VERTEX_SHADER && desc.geometry.empty() && desc.evaluation.empty()
             && strip_comments(source.text).find("gl_Position") == std::string::npos) {
             return fail("{}: context: no write of gl_Position found, expected one", desc.vertex);
         }
@@ -345,6 +354,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
             log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));
+    program.tessellated_ = !desc.evaluation.empty();
     LIMN_TRY(check_bindings(desc, program));
     LIMN_TRY(check_textures(caps_, desc, program));
     return program;

@@ -21,9 +21,11 @@ struct DeviceCaps;
 // folder, one subfolder per program, for glslangValidator -l (tests/glslang.cmake).
 
 /// The source files of a program and its preprocessor definitions. Set either `compute` or `vertex`
-/// (with the others).
+/// (with the others). The file of a stage may be one that is usually that of another.
 struct ProgramDesc {
     std::string vertex = {};
+    std::string control = {};  ///< of tessellation, with `evaluation`
+    std::string evaluation = {};
     std::string geometry = {};
     std::string fragment = {};
     std::string compute = {};

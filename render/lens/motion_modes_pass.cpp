@@ -171,7 +171,7 @@ TextureId MotionStretch::blur(
         "motion blur",
         mesh_reads(
             graph, *view.frame,
-            {sampled(view.radiance, layout::kSourceUnit),
+            {sampled(view.radiance, layout::kStretchRadianceUnit),
              sampled(history, layout::kPreviousRadianceUnit),
              sampled(view.gbuffer.depth, layout::kStretchDepthUnit)}),
         std::array{Use(blurred), cleared(layer_depth)},

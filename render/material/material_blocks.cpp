@@ -79,7 +79,7 @@ std::optional<layout::HairBlock> make_block_of_hair(const Material& m) {
 }
 
 std::optional<layout::ReliefBlock> make_relief_block(const Material& m) {
-    const Vec4 search = {m.relief_depth, m.relief_steps, m.relief_refinements, 0};
+    const Vec4 search = {m.relief_depth, m.relief_steps, m.relief_refinements, m.tessellation};
     return is_used(m.relief_texture) ? std::optional(layout::ReliefBlock{.search = search})
                                      : std::nullopt;
 }

@@ -71,26 +71,23 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
     batches_.clear();
     batch_of_.clear();
     models_.clear();
+    displacements_.clear();
     textures_.clear();
     shading_models_ = 0;
     layers_ = 0;
     diffuses_ = false;
     curves_ = false;
     key_shadows_ = false;
+    displaces_ = false;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
     missing.base_color = {1, 0, 1, 1};
     add_material(missing);
     for (const Material& material : assets.materials) {
-        if (const SurfaceDetail drawn = limited_detail(material.detail, limit);
-            drawn != material.detail) {
-            Material fallen = material;
-            fallen.detail = drawn;
-            add_material(fallen);
-        } else {
-            add_material(material);
-        }
+        Material drawn = supported(material);
+        drawn.detail = limited_detail(drawn.detail, limit);
+        add_material(drawn);
     }
     limit_ = limit;
     material_count_ = assets.materials.size();
@@ -145,6 +142,18 @@ void MaterialPool::add_maps(
     batch.textures = index_of(bindings);
 }
 
+Material MaterialPool::supported(Material material) {
+    const SurfaceDetail detail = supported_detail(material.detail, device_.caps());
+    if (detail != material.detail && !reported_tessellation_) {
+        reported_tessellation_ = true;
+        log_warn(
+            "material {}: no tessellation found; displaced materials are drawn as silhouette",
+            material.name);
+    }
+    material.detail = detail;
+    return material;
+}
+
 void MaterialPool::add_material(const Material& material) {
     layout::MaterialRecord record = make_record(material, blocks_);
     SurfaceBatch batch;
@@ -177,6 +186,9 @@ void MaterialPool::add_material(const Material& material) {
         key_shadows_
         || (material.relief_shadow == ReliefShadow::Ray && depth_below_mesh(material) > 0);
     curves_ = curves_ || material.detail == SurfaceDetail::Silhouette;
+    const bool displaced = is_tessellated(batch.features);
+    displaces_ = displaces_ || displaced;
+    displacements_.push_back(displaced ? material.relief_depth : 0.0f);
     const std::uint32_t model = stored_number(layers != 0 ? kLayeredModel : material.shading);
     models_.push_back(static_cast<std::uint8_t>(model));
     shading_models_ |= 1u << model;

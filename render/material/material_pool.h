@@ -71,6 +71,13 @@ class MaterialPool {
     /// Whether some material needs the curvatures of meshes (SurfaceDetail::Silhouette).
     [[nodiscard]] bool curves() const { return curves_; }
 
+    /// How far a material moves vertices [m], in the scale of the mesh (SurfaceDetail::Displaced).
+    [[nodiscard]] float displacement_of(std::uint32_t record) const {
+        return displacements_[record];
+    }
+    /// Whether some material does.
+    [[nodiscard]] bool displaces() const { return displaces_; }
+
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
     [[nodiscard]] const ImagePool& images() const { return images_; }
@@ -79,6 +86,8 @@ class MaterialPool {
   private:
     void upload_records();
     void add_material(const Material& material);
+    /// With detail that the device can draw; reported once if it is another.
+    [[nodiscard]] Material supported(Material material);
     /// Assigns texture units to its maps and writes their layers.
     void add_maps(const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record);
     [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
@@ -93,6 +102,7 @@ class MaterialPool {
     std::vector<SurfaceBatch> batches_;
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
     std::vector<std::uint8_t> models_;     ///< by record
+    std::vector<float> displacements_;     ///< by record
     std::vector<layout::MaterialRecord> records_;
     std::vector<Vec4> blocks_;  ///< of all materials, one after the other
     gpu::Buffer record_buffer_;
@@ -106,6 +116,8 @@ class MaterialPool {
     bool diffuses_ = false;
     bool curves_ = false;
     bool key_shadows_ = false;
+    bool displaces_ = false;
+    bool reported_tessellation_ = false;
 };
 
 }  // namespace limn

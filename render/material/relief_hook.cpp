@@ -1,5 +1,6 @@
 #include "render/material/relief_hook.h"
 
+#include "render/gpu/device_caps.h"
 #include "render/material/material_maps.h"
 #include "render/material/surface_features.h"
 
@@ -9,7 +10,7 @@ namespace limn {
 namespace {
 
 constexpr HookPoint kReliefPoints[] = {
-    HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal, HookPoint::Sample};
+    HookPoint::Position, HookPoint::Vertex, HookPoint::Uv, HookPoint::Normal, HookPoint::Sample};
 
 constexpr HookDefinition kReliefDefinitions[] = {
     {kReliefBump, "RELIEF_BUMP"},      {kReliefParallax, "RELIEF_PARALLAX"},
@@ -17,7 +18,7 @@ constexpr HookDefinition kReliefDefinitions[] = {
     {kReliefClosed, "RELIEF_CLOSED"},  {kReliefCurved, "RELIEF_CURVED"},
     {kReliefShifted, "SHIFTED_UV"},    {kReliefOffMesh, "OFF_MESH"},
     {kReliefObject, "OBJECT_NORMALS"}, {kReliefRays, "RELIEF_RAYS"},
-    {kReliefBottom, "RELIEF_BOTTOM"},
+    {kReliefBottom, "RELIEF_BOTTOM"},  {kReliefDisplaced, "RELIEF_DISPLACED"},
 };
 
 /// In the order of SurfaceDetail.
@@ -34,7 +35,7 @@ constexpr std::uint16_t kReliefOfDetail[] = {
     kReliefClosed | kBelow,
     kReliefCurved | kBelow,
     kReliefBump,
-    kReliefBump,
+    kReliefDisplaced,
 };
 
 std::uint16_t relief_of_material(const Material& material) {
@@ -79,12 +80,25 @@ const SurfaceHook kReliefHook = {
     .name = "relief",
     .points = kReliefPoints,
     .definitions = kReliefDefinitions,
+    .moving = kReliefDisplaced,
     .off_mesh = kReliefOffMesh,
     .maps = 1u << layout::kReliefSlot,
+    .position_file = "lib/relief_position.glsl",
     .vertex_file = "lib/relief_vertex.glsl",
     .surface_file = "lib/relief_surface.glsl",
     .of_material = relief_of_material,
     .add = add_relief,
 };
+
+SurfaceDetail supported_detail(SurfaceDetail detail, const gpu::DeviceCaps& caps) {
+    return detail == SurfaceDetail::Displaced && caps.max_evaluation_textures == 0
+               ? SurfaceDetail::Silhouette
+               : detail;
+}
+
+bool is_tessellated(const SurfaceFeatures& features) {
+    return (features.hooks.of(kReliefHook) & kReliefDisplaced) != 0
+           && features.maps.has(layout::kReliefSlot);
+}
 
 }  // namespace limn

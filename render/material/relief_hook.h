@@ -7,6 +7,11 @@
 
 namespace limn {
 
+namespace gpu {
+struct DeviceCaps;
+}
+enum class SurfaceDetail : std::uint8_t;
+
 // What the relief of a material (Material::detail) adds to the programs of surfaces.
 // lib/relief_surface.glsl explains the definitions.
 
@@ -24,11 +29,18 @@ enum ReliefFeature : std::uint16_t {
     kReliefObject = 1u << 9,   // the normal map is in mesh space
     kReliefRays = 1u << 10,    // key lights are shadowed by a second ray (key_shadows.glsl)
     kReliefBottom = 1u << 11,  // casts shadows as its bottom, so that none falls on itself
+    kReliefDisplaced = 1u << 14,
 };
 
 extern const SurfaceHook kReliefHook;
 
 /// Depth of the relief below the mesh [m]; 0: fragments are on the mesh.
 [[nodiscard]] float depth_below_mesh(const Material& material);
+
+/// `detail`, or the next one that the device can draw.
+[[nodiscard]] SurfaceDetail supported_detail(SurfaceDetail detail, const gpu::DeviceCaps& caps);
+
+/// Whether meshes with these features are tessellated, and their vertices displaced.
+[[nodiscard]] bool is_tessellated(const SurfaceFeatures& features);
 
 }  // namespace limn

@@ -47,6 +47,20 @@ constexpr PointText kPointTexts[] = {
     {"sample", "inout SurfaceSample s, vec3 smooth_normal", "s, smooth_normal"},
 };
 
+/// With the maps that it reads, and their texture coordinates.
+void add_hook(
+    SurfaceFeatures& depth_only, const SurfaceFeatures& features, const SurfaceHook& hook,
+    unsigned bits) {
+    if (bits == 0) {
+        return;
+    }
+    depth_only.hooks.set(hook, static_cast<std::uint16_t>(depth_only.hooks.of(hook) | bits));
+    if (hook.maps != 0) {
+        depth_only.maps.add(features.maps, hook.maps);
+        depth_only.bits |= features.bits & (kUvMap | kUvMaps);
+    }
+}
+
 }  // namespace
 
 std::uint16_t HookBits::of(const SurfaceHook& hook) const {
@@ -78,12 +92,10 @@ void add_hooks(SurfaceFeatures& features, const HookBits& instance) {
     }
 }
 
-HookBits moving_hooks(const HookBits& hooks) {
-    HookBits moving;
+void add_moving_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features) {
     for (const SurfaceHook* hook : kSurfaceHooks) {
-        moving.set(*hook, static_cast<std::uint16_t>(hooks.of(*hook) & hook->moving));
+        add_hook(depth_only, features, *hook, features.hooks.of(*hook) & hook->moving);
     }
-    return moving;
 }
 
 bool is_off_mesh(const SurfaceFeatures& features) {
@@ -94,18 +106,15 @@ bool is_off_mesh(const SurfaceFeatures& features) {
 
 void add_off_mesh_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features) {
     for (const SurfaceHook* hook : kSurfaceHooks) {
-        const std::uint16_t bits = features.hooks.of(*hook);
-        if ((bits & hook->off_mesh) == 0) {
-            continue;
-        }
-        depth_only.hooks.set(*hook, bits);
-        depth_only.maps.add(features.maps, hook->maps);
+        const unsigned bits = features.hooks.of(*hook);
+        add_hook(depth_only, features, *hook, (bits & hook->off_mesh) != 0 ? bits : 0u);
     }
 }
 
 void remove_off_mesh_hooks(SurfaceFeatures& features) {
     for (const SurfaceHook* hook : kSurfaceHooks) {
-        if ((features.hooks.of(*hook) & hook->off_mesh) != 0) {
+        const unsigned by_maps = hook->off_mesh | (hook->maps != 0 ? hook->moving : 0u);
+        if ((features.hooks.of(*hook) & by_maps) != 0) {
             features.hooks.set(*hook, 0);
             features.maps.remove_all(hook->maps);
         }

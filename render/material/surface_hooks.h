@@ -67,7 +67,7 @@ struct SurfaceHook {
     std::span<const HookDefinition> definitions;
     std::uint16_t moving = 0;             ///< bits with which it moves vertices
     std::uint16_t off_mesh = 0;           ///< bits with which fragments lie off the mesh
-    std::uint32_t maps = 0;               ///< with off_mesh: bits of the map slots that it reads
+    std::uint32_t maps = 0;  ///< with moving or off_mesh: bits of the map slots that it reads
     const char* position_file = nullptr;  ///< with HookPoint::Position
     const char* vertex_file = nullptr;    ///< with HookPoint::Vertex
     const char* surface_file = nullptr;   ///< with any other point
@@ -87,8 +87,8 @@ struct SurfaceHook {
 /// Calls SurfaceHook::add of each.
 void add_hooks(SurfaceFeatures& features, const HookBits& instance);
 
-/// The hooks that move vertices, which depth-only passes need, too.
-[[nodiscard]] HookBits moving_hooks(const HookBits& hooks);
+/// Adds the hooks of `features` that move vertices, and their maps, to those of a depth-only pass.
+void add_moving_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features);
 
 /// Whether some hook has fragments lie off the mesh.
 [[nodiscard]] bool is_off_mesh(const SurfaceFeatures& features);
@@ -97,7 +97,7 @@ void add_hooks(SurfaceFeatures& features, const HookBits& instance);
 /// a depth-only pass.
 void add_off_mesh_hooks(SurfaceFeatures& depth_only, const SurfaceFeatures& features);
 
-/// Removes them, for programs that shade vertices.
+/// Removes them and those that move vertices by their maps, for programs that shade vertices.
 void remove_off_mesh_hooks(SurfaceFeatures& features);
 
 /// Adds the definition of each bit.

@@ -1,5 +1,5 @@
-// Every mesh instance, for the G-buffer and for the passes that shade while drawing. Definitions of
-// lib/mesh_vertex.glsl, and
+// Every mesh instance, or the evaluation stage of tessellated ones, for the G-buffer and for the passes that shade while
+// drawing. Definitions of lib/mesh_vertex.glsl, and
 //   VELOCITY  also the position in the previous frame
 //   DEFORMED  with VELOCITY: vertices also move in mesh space
 //   OBJECT_LIGHTS  also the index of the instance

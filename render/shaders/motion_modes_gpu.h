@@ -6,8 +6,11 @@
 namespace limn::layout {
 #endif
 
-const uint kPreviousRadianceUnit = 1u;
-const uint kStretchDepthUnit = 2u;
+// Of passes that draw meshes, displaced by their maps: other than the units of maps.
+const uint kStretchRadianceUnit = 5u;
+const uint kPreviousRadianceUnit = 6u;
+const uint kStretchDepthUnit = 7u;
+
 const uint kFlowUnit = 1u;
 const uint kCameraMotionDepthUnit = 1u;
 

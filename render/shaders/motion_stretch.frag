@@ -3,10 +3,9 @@
 #version 450
 #include "lib/motion.glsl"
 #include "lib/view.glsl"
-#include "fullscreen_gpu.h"
 #include "motion_modes_gpu.h"
 
-layout(binding = kSourceUnit) uniform sampler2D radiance;                     // of this frame
+layout(binding = kStretchRadianceUnit) uniform sampler2D radiance;                     // of this frame
 layout(binding = kPreviousRadianceUnit) uniform sampler2D previous_radiance;  // of the previous frame
 layout(binding = kStretchDepthUnit) uniform sampler2D depth_map;              // of this frame
 

@@ -7,7 +7,7 @@ namespace limn::layout {
 #endif
 
 struct ReliefBlock {
-    vec4 search;  // depth of the relief [m], steps, refinements
+    vec4 search;  // depth of the relief [m], steps, refinements, Material::tessellation [px]
 };
 
 // Bindings.

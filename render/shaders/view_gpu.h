@@ -19,6 +19,8 @@ struct ViewBlock {
                                // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
     vec4 orthographic;         // x: distance of the eye behind an orthographic camera, where fog and cascades begin [m]
+    vec4 tessellation;         // eye for which displaced meshes are divided, also in its shadow maps; w: pixels per meter
+                               // at a distance of 1 m
 };
 
 const uint kViewBinding = 0u;
@@ -30,6 +32,6 @@ const uint kMaxEffectBlocks = 4u;
 const uint kEffectBlockBytes = 256u;  // of each, at most
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 272);
+static_assert(sizeof(ViewBlock) == 288);
 }  // namespace limn::layout
 #endif

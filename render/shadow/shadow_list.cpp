@@ -3,9 +3,11 @@
 #include "ecs/base/hash.h"
 #include "ecs/base/log.h"
 #include "ecs/world.h"
+#include "render/material/material_pool.h"
 #include "render/shaders/view_gpu.h"
 #include "render/shadow/light_bounds.h"
 #include "render/shadow/perspective_view.h"
+#include "render/view_block.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -344,12 +346,14 @@ void ShadowCollector::collect(
     }
     signatures_.resize(views_.size());
     hash_casters(*frame.items, volumes_, signatures_);
+    // Displaced casters are divided for the eye of the view.
+    const Vec4 eye = frame.materials->displaces() ? tessellation_eye(view.camera) : Vec4(0);
     for (const LightViews& request : requests_) {
         for (std::size_t i = 0; request.allocated && i < request.count; ++i) {
             const std::size_t v = request.first_view + i;
             CachedMap& map = cached_map(request, i);
             const std::uint64_t signature = hash_combine(
-                hash_combine(signatures_[v], frame.assets_identity),
+                hash_bytes(&eye, sizeof eye, hash_combine(signatures_[v], frame.assets_identity)),
                 std::bit_cast<std::uint32_t>(views_[v].detail));
             if (map.drawn && map.signature == signature
                 && map.clip_from_world == views_[v].clip_from_world) {
@@ -368,6 +372,7 @@ void ShadowCollector::collect(
                 *frame.items, all ? CasterVolume{kEverywhere} : volumes_[v], *frame.ring,
                 draw.casters);
             block.clip_from_world = views_[v].clip_from_world;
+            block.tessellation = eye;
             draw.view_block = frame.ring->push_value(block);
         }
     }

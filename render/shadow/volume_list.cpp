@@ -266,10 +266,13 @@ void VolumeCollector::add_item(
         if (!candidate.served || !reaches_box(candidate.range, box)) {
             continue;
         }
-        if (state.inflated || state.deformed) {
+        const bool displaced = is_tessellated(items.materials().batch(state.batch).features);
+        if (state.inflated || state.deformed || displaced) {
             refuse(
                 candidate, "shadow volumes: mesh " + assets.meshes[surface.mesh.index].name
-                               + (state.deformed ? " is deformed" : " is inflated")
+                               + (state.deformed   ? " is deformed"
+                                  : state.inflated ? " is inflated"
+                                                   : " is displaced")
                                + "; lights that reach it use shadow maps");
         } else {
             add_caster(

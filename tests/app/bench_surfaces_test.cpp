@@ -45,7 +45,7 @@ TEST_CASE("bench_surfaces: each kind of detail is measured once, the flat one fi
     std::ranges::sort(details);
     CHECK(std::ranges::adjacent_find(details) == details.end());
     // Without ObjectNormal and DoubleDepth, which need maps of another kind.
-    CHECK(details.size() == static_cast<std::size_t>(SurfaceDetail::Silhouette) - 1);
+    CHECK(details.size() == static_cast<std::size_t>(SurfaceDetail::Displaced) - 1);
 }
 
 TEST_CASE("bench_surfaces: nothing but the wall is left, with its detail, before a still camera") {

@@ -399,7 +399,9 @@ TEST_CASE("house: bindings have names, in a header that shaders and C++ share") 
             }
         }
     };
-    check(files_in({"render/shaders"}, {".vert", ".geom", ".frag", ".comp", ".glsl"}), in_shaders);
+    check(
+        files_in({"render/shaders"}, {".vert", ".tesc", ".geom", ".frag", ".comp", ".glsl"}),
+        in_shaders);
     check(files_in({"render", "content"}, {".h", ".cpp"}), in_sources);
 }
 

@@ -43,7 +43,7 @@ const std::vector<KnownDefine>& known_defines() {
 
 /// What only a shader's own text defines: that it interpolates light and has no normals, or lights
 /// all corners of a particle at once.
-constexpr const char* kOwnDefines[] = {"LIT_AT_VERTICES", "MEAN_OF_CORNERS"};
+constexpr const char* kOwnDefines[] = {"LIT_AT_VERTICES", "MEAN_OF_CORNERS", "TESSELLATED"};
 
 std::string text_of(const std::string& path, const std::vector<gpu::ShaderDefine>& defines) {
     const Result<gpu::ShaderSource> source =
@@ -176,7 +176,7 @@ TEST_CASE("glslang: every shader is valid with and without each definition") {
          std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/render/shaders")) {
         const std::string extension = entry.path().extension().string();
         if (extension != ".vert" && extension != ".frag" && extension != ".geom"
-            && extension != ".comp") {
+            && extension != ".comp" && extension != ".tesc") {
             continue;
         }
         const test::TemporaryFolder folder;

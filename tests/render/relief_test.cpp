@@ -20,9 +20,9 @@ namespace {
 constexpr float kDepth = 0.4f;         // of the relief [m]
 constexpr float kHalf = 128.0f / 255;  // depth in its map
 constexpr int kSize = 96;
-constexpr SurfaceDetail kSearches[] = {
-    SurfaceDetail::Occlusion, SurfaceDetail::Relief, SurfaceDetail::Cone,
-    SurfaceDetail::DoubleDepth, SurfaceDetail::Silhouette};
+constexpr SurfaceDetail kSearches[] = {SurfaceDetail::Occlusion,  SurfaceDetail::Relief,
+                                       SurfaceDetail::Cone,       SurfaceDetail::DoubleDepth,
+                                       SurfaceDetail::Silhouette, SurfaceDetail::Displaced};
 
 /// Normals straight up, a closed back and wide cones, of this depth.
 ImageData flat_map(std::uint8_t depth) {

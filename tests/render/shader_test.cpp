@@ -377,7 +377,7 @@ TEST_CASE("shader: every shader of the folder finds its includes") {
         const std::string path = gpu::kEmbeddedShaders[i].path;
         const std::string extension = std::filesystem::path(path).extension().string();
         if (extension == ".vert" || extension == ".frag" || extension == ".comp"
-            || extension == ".geom") {
+            || extension == ".geom" || extension == ".tesc") {
             const auto source = gpu::assemble_shader(files, path);
             CHECK_MESSAGE(source.ok(), message_of(source));
         }

@@ -1,5 +1,7 @@
+#include "ecs/components/surface.h"
 #include "render/geometry/surface_draws.h"
 #include "render/gpu/shader_library.h"
+#include "render/material/relief_hook.h"
 #include "render/material/surface_features.h"
 #include "render/material/wrinkle_hook.h"
 #include "render/shaders/material_maps_gpu.h"
@@ -76,6 +78,24 @@ TEST_CASE("surface hooks: depth and motion need only the bits that move vertices
     CHECK(moving.hooks.of(kWrinkleHook) == kWrinkleDisplaced);
     CHECK(moving.maps == MapUnits{});
     CHECK(moving_features(features_for(kWrinkled | kWrinkleBlend)) == SurfaceFeatures{});
+}
+
+TEST_CASE("surface hooks: depth and motion of displaced meshes need the map that moves them") {
+    SurfaceFeatures features;
+    features.maps.set(layout::kBaseColorSlot, 0);
+    features.maps.set(layout::kReliefSlot, 1);
+    features.bits = kUvMaps | kVertexColor;
+    features.hooks = material_hooks(Material{.detail = SurfaceDetail::Displaced});
+    add_hooks(features, {});
+    CHECK(is_tessellated(features));
+    const SurfaceFeatures moving = moving_features(features);
+    CHECK(is_tessellated(moving));
+    CHECK(moving.maps.unit(layout::kReliefSlot) == 1);
+    CHECK_FALSE(moving.maps.has(layout::kBaseColorSlot));
+    CHECK(moving.bits == kUvMaps);
+    remove_off_mesh_hooks(features);
+    CHECK_FALSE(is_tessellated(features));
+    CHECK(features.maps.has(layout::kBaseColorSlot));
 }
 
 TEST_CASE("surface hooks: each bit of wrinkles is a definition of its own") {

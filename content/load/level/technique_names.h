@@ -360,6 +360,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"tex.colour-map", "color map, diffuse map, albedo texture"},
     {"tex.combine", "multitexturing"},
     {"tex.control-map", "control map, roughness map, specular map, packed ORM texture"},
+    {"tex.displacement", "displacement mapping, tessellation, displaced vertices"},
     {"tex.feedback", "render to texture, ping-pong, game of life, reaction-diffusion"},
     {"tex.hatching", "hatching, tonal art maps, pen-and-ink rendering, cross-hatching, "
                      "non-photorealistic rendering"},

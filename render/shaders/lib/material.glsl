@@ -5,8 +5,7 @@
 //   SPECULAR_TINT_MAP ANISOTROPY_MAP IRIDESCENCE_MAP IRIDESCENCE_THICKNESS_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
-//   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
-//   UV_MAPS        each has its own
+//   UV_MAP, UV_MAPS  of lib/material_maps.glsl
 //   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
@@ -55,27 +54,12 @@ layout(depth_less) out float gl_FragDepth;  // depth is reversed: never nearer t
 #endif
 
 #ifdef MAP_LAYERS
-// Maps the texture coordinates `sets`, with offset 0 a difference of them, to those of a map.
-vec2 map_coordinates(uint slot, vec4 sets, float offset_factor) {
-#if defined(UV_MAPS) || defined(UV_MAP)
-#ifdef UV_MAP
-    slot = 0u;  // all are the same
-#endif
-    vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot));
-    vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot) + 1);
-    vec2 set = offset.z > 0.5 ? sets.zw : sets.xy;
-    return vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset_factor * offset.xy;
-#else
-    return sets.xy;
-#endif
-}
-
 vec2 map_coordinates(uint slot, vec4 sets) {
-    return map_coordinates(slot, sets, 1.0);
+    return map_coordinates(material_and_flags.x, slot, sets, 1.0);
 }
 
 vec2 map_gradient(uint slot, vec4 difference) {
-    return map_coordinates(slot, difference, 0.0);
+    return map_coordinates(material_and_flags.x, slot, difference, 0.0);
 }
 
 // Texture coordinates and layer of a map.

@@ -1,20 +1,22 @@
-// Inputs and transforms of vertex shaders of mesh instances. Definition:
+// Inputs and transforms of vertex shaders of mesh instances, or of the evaluation stage of tessellated ones. Definitions
+// of lib/vertex_input.glsl, and
 //   INFLATE  vertices move along their normals
 // Hooks move vertices, too (render/material/surface_hooks.h).
 // Techniques: bump.tangent-space, shade.lighting-space
 
 #include "lib/inflate.glsl"
+#include "lib/vertex_input.glsl"
 
-layout(location = 0) in vec3 position_ms;
-layout(location = 1) in vec3 normal_ms;
-layout(location = 2) in vec4 tangent_ms;  // w: sign of the bitangent
-layout(location = 3) in vec2 first_uv;
-layout(location = 4) in vec4 color;
-layout(location = 5) in vec4 world_row0;  // world_from_mesh
-layout(location = 6) in vec4 world_row1;
-layout(location = 7) in vec4 world_row2;
-layout(location = 8) in uvec4 instance;   // material, flags, index; w: bits of the inflation distance
-layout(location = 13) in vec2 second_uv;
+VERTEX_INPUT(0, vec3, position_ms);
+VERTEX_INPUT(1, vec3, normal_ms);
+VERTEX_INPUT(2, vec4, tangent_ms);  // w: sign of the bitangent
+VERTEX_INPUT(3, vec2, first_uv);
+VERTEX_INPUT(4, vec4, color);
+INSTANCE_INPUT(5, vec4, world_row0);  // world_from_mesh
+INSTANCE_INPUT(6, vec4, world_row1);
+INSTANCE_INPUT(7, vec4, world_row2);
+INSTANCE_INPUT(8, uvec4, instance);  // material, flags, index; w: bits of the inflation distance
+VERTEX_INPUT(13, vec2, second_uv);
 
 #include "generated/position_hooks.glsl"
 

@@ -1,10 +1,12 @@
 // Position of a vertex of lib/mesh_vertex.glsl in the previous frame. Definition:
 //   DEFORMED  vertices also move in mesh space
 
-layout(location = 9) in vec4 previous_row0;  // world_from_mesh
-layout(location = 10) in vec4 previous_row1;
-layout(location = 11) in vec4 previous_row2;
-layout(location = 12) in vec3 previous_position_ms;
+#include "lib/vertex_input.glsl"
+
+INSTANCE_INPUT(9, vec4, previous_row0);  // world_from_mesh
+INSTANCE_INPUT(10, vec4, previous_row1);
+INSTANCE_INPUT(11, vec4, previous_row2);
+VERTEX_INPUT(12, vec3, previous_position_ms);
 
 vec3 previous_vertex_ws() {
 #ifdef DEFORMED

@@ -8,6 +8,7 @@
 //   RELIEF_BUMP      normals from differences of depth, and nothing else
 //   RELIEF_RAYS      with KEY_SHADOWS: a second ray finds whether the key lights are visible
 //   RELIEF_BOTTOM    with SHADOW_CASTER: the depth of the bottom, so that no shadow falls on the relief itself
+//   RELIEF_DISPLACED the mesh is the relief: normals of the map, and nothing else
 //   OBJECT_NORMALS   without relief: the normal map holds normals in mesh space
 // Techniques: bump.height-field, bump.object-space-map, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
 //     relief.parallax, relief.permutations, relief.planar, relief.self-shadow, relief.silhouette, relief.tangent,
@@ -116,7 +117,7 @@ int relief_steps(float most, float cosine) {
 #endif
 
 void relief_uv(inout vec4 uv) {
-#if defined(RELIEF) && !defined(RELIEF_BUMP)
+#if defined(RELIEF) && !defined(RELIEF_BUMP) && !defined(RELIEF_DISPLACED)
     vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
     float depth = relief_meters(search);
     vec3 position_ws = relief_position.xyz + view.camera_ws.xyz;

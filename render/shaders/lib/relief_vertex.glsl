@@ -4,7 +4,7 @@
 
 #ifdef RELIEF_MAP
 #include "relief_gpu.h"
-layout(location = 10) out vec4 relief_position;  // from the camera [m]; w: scale of the instance
+layout(location = 10) out vec4 relief_point;  // relief_position of fragments: from the camera [m]; w: scale of the instance
 #ifdef RELIEF_CURVED
 layout(binding = kCurvaturesUnit) uniform samplerBuffer curvatures;
 layout(location = 11) out vec2 relief_curvature;  // of the mesh's quadric along tangent and bitangent [1/m]
@@ -23,9 +23,9 @@ void relief_vertex(inout vec3 tangent, vec3 normal) {
 #endif
 #ifdef RELIEF_MAP
     float volume = abs(dot(world_row0.xyz, cross(world_row1.xyz, world_row2.xyz)));
-    relief_position = vec4(vertex_ws() - view.camera_ws.xyz, pow(volume, 1.0 / 3.0));
+    relief_point = vec4(vertex_ws() - view.camera_ws.xyz, pow(volume, 1.0 / 3.0));
 #ifdef RELIEF_CURVED
-    relief_curvature = texelFetch(curvatures, gl_VertexID).xy / max(relief_position.w, 1e-20);
+    relief_curvature = texelFetch(curvatures, gl_VertexID).xy / max(relief_point.w, 1e-20);
 #endif
 #endif
 }

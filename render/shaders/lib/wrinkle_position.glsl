@@ -3,7 +3,7 @@
 // Techniques: wrinkle.displacement
 
 #ifdef WRINKLE_DISPLACED
-layout(location = 15) in float fold_height;  // along the normal [m]
+VERTEX_INPUT(15, float, fold_height);  // along the normal [m]
 #endif
 
 void wrinkle_position(inout vec3 position) {

@@ -4,7 +4,7 @@
 
 #if defined(WRINKLE_MAP) || defined(WRINKLE_VIEW)
 #define WRINKLE_STREAM
-layout(location = 14) in vec4 wrinkle;
+VERTEX_INPUT(14, vec4, wrinkle);
 #ifdef WRINKLE_FLAT
 flat
 #endif
