@@ -19,6 +19,7 @@ constexpr HookDefinition kReliefDefinitions[] = {
     {kReliefShifted, "SHIFTED_UV"},    {kReliefOffMesh, "OFF_MESH"},
     {kReliefObject, "OBJECT_NORMALS"}, {kReliefRays, "RELIEF_RAYS"},
     {kReliefBottom, "RELIEF_BOTTOM"},  {kReliefDisplaced, "RELIEF_DISPLACED"},
+    {kReliefOdd, "RELIEF_ODD"},
 };
 
 /// In the order of SurfaceDetail.
@@ -34,15 +35,17 @@ constexpr std::uint16_t kReliefOfDetail[] = {
     kReliefCones | kBelow,
     kReliefClosed | kBelow,
     kReliefCurved | kBelow,
-    kReliefBump,
+    kReliefOdd | kBelow,
     kReliefDisplaced,
 };
 
 std::uint16_t relief_of_material(const Material& material) {
     std::uint16_t bits = kReliefOfDetail[static_cast<std::size_t>(material.detail)];
-    if ((bits & kReliefOffMesh) != 0 && material.relief_shadow != ReliefShadow::Map) {
+    // What two directions see of an ODD map agrees to a cell of it: too little to shadow itself.
+    const bool odd = (bits & kReliefOdd) != 0;
+    if ((bits & kReliefOffMesh) != 0 && (material.relief_shadow != ReliefShadow::Map || odd)) {
         bits |= kReliefBottom;
-        bits |= material.relief_shadow == ReliefShadow::Ray ? kReliefRays : 0;
+        bits |= material.relief_shadow == ReliefShadow::Ray && !odd ? kReliefRays : 0;
     }
     return bits;
 }

@@ -30,6 +30,7 @@ enum ReliefFeature : std::uint16_t {
     kReliefRays = 1u << 10,    // key lights are shadowed by a second ray (key_shadows.glsl)
     kReliefBottom = 1u << 11,  // casts shadows as its bottom, so that none falls on itself
     kReliefDisplaced = 1u << 14,
+    kReliefOdd = 1u << 15,
 };
 
 extern const SurfaceHook kReliefHook;

@@ -4,6 +4,7 @@
 #include "content/app/commands/headless.h"
 #include "content/app/commands/progress.h"
 #include "content/app/commands/stage.h"
+#include "content/make/patterns/relief_patterns.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/name.h"
 #include "ecs/components/transform.h"
@@ -30,6 +31,15 @@ median_of(const BenchReport& report, BenchKind kind, BenchClock clock, std::stri
         }
     }
     return 0;
+}
+
+void use_odd_map(Assets& assets, Material& material) {
+    TextureSlot& slot = material.relief_texture;
+    if (slot.image.index < assets.images.size()) {
+        assets.images.push_back(make_odd_map(
+            assets.images[slot.image.index], material.relief_depth * std::abs(slot.scale.x)));
+        slot.image = {static_cast<std::uint32_t>(assets.images.size() - 1)};
+    }
 }
 
 Status measure_wall(
@@ -59,7 +69,9 @@ std::vector<SurfaceBenchPoint> surface_points() {
         {.name = "cone stepping", .detail = SurfaceDetail::Cone},
         {.name = "parallax occlusion", .detail = SurfaceDetail::Occlusion},
         {.name = "relief", .detail = SurfaceDetail::Relief},
-        {.name = "silhouette", .detail = SurfaceDetail::Silhouette}};
+        {.name = "silhouette", .detail = SurfaceDetail::Silhouette},
+        {.name = "odd", .detail = SurfaceDetail::Odd},
+        {.name = "displaced", .detail = SurfaceDetail::Displaced}};
 }
 
 void set_wall(Stage& stage, SurfaceDetail detail) {
@@ -73,6 +85,9 @@ void set_wall(Stage& stage, SurfaceDetail detail) {
         return;  // `--set` took it away
     }
     assets.materials[wall].detail = detail;
+    if (detail == SurfaceDetail::Odd) {
+        use_odd_map(assets, assets.materials[wall]);
+    }
     ++assets.material_version;
     world.query<MeshInstance>().each([wall](MeshInstance& instance) {
         if (instance.material.index != wall) {

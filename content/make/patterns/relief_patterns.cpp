@@ -1,9 +1,11 @@
 #include "content/make/patterns/relief_patterns.h"
 
+#include "content/bake/odd_map.h"
 #include "content/make/patterns/pattern_tools.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -43,7 +45,44 @@ float bead_row(const Vec2& p, float radius, float half_width, int beads) {
     return dome(std::min(glm::length(from) / half_width, 1.0f));
 }
 
+/// Depths as heights, averaged to a few texels per position of an ODD map.
+HeightMap heights_for_odd(const ImageData& relief) {
+    const int step = std::max(1, relief.width / (4 * kOddPositions));
+    HeightMap map;
+    map.width = std::max(1, relief.width / step);
+    map.height = std::max(1, relief.height / step);
+    for (int y = 0; y < map.height; ++y) {
+        for (int x = 0; x < map.width; ++x) {
+            int sum = 0;
+            for (int i = 0; i < step * step; ++i) {
+                const int pixel = (step * y + i / step) * relief.width + step * x + i % step;
+                sum += relief.pixels[static_cast<std::size_t>(4 * pixel + 3)];
+            }
+            map.heights.push_back(
+                1 - static_cast<float>(sum) / static_cast<float>(255 * step * step));
+        }
+    }
+    return map;
+}
+
+PatternMaps with_odd_map(PatternMaps maps, bool odd, float depth) {
+    if (odd) {
+        maps.relief = make_odd_map(maps.relief, depth);
+    }
+    return maps;
+}
+
 }  // namespace
+
+ImageData make_odd_map(const ImageData& relief, float depth) {
+    const TileSurface tile = tile_of(heights_for_odd(relief), depth);
+    const BakedMap map = bake_odd(tile, TileCaster(tile), OddOrder::Directions);
+    ImageData image;
+    image.width = map.width;
+    image.height = map.height;
+    image.pixels = map_bytes(map, 4);
+    return image;
+}
 
 PatternMaps make_blocks(const BlocksPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
@@ -51,7 +90,7 @@ PatternMaps make_blocks(const BlocksPattern& pattern) {
     const int columns =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(rows) / pattern.aspect)));
     const float block = static_cast<float>(rows) / static_cast<float>(columns);  // in heights
-    return make_relief_maps(pattern.image.size, pattern.relief, [&](const Vec2& uv) {
+    PatternMaps maps = make_relief_maps(pattern.image.size, pattern.relief, [&](const Vec2& uv) {
         const Vec2 ragged = {fbm(uv, 3 * rows, seed + 40, 4), fbm(uv, 3 * rows, seed + 50, 4)};
         const Vec2 p = uv * Vec2(columns, rows) + 0.05f * pattern.broken * ragged;
         const int course = static_cast<int>(std::floor(p.y));
@@ -85,12 +124,13 @@ PatternMaps make_blocks(const BlocksPattern& pattern) {
         t.occlusion = glm::mix(0.35f, 1.0f, glm::smoothstep(0.0f, half + 0.12f, edge));
         return t;
     });
+    return with_odd_map(std::move(maps), pattern.odd, pattern.relief);
 }
 
 PatternMaps make_rosettes(const RosettesPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     const int cells = 8 * pattern.panels;
-    return make_relief_maps(pattern.image.size, pattern.relief, [&](const Vec2& uv) {
+    PatternMaps maps = make_relief_maps(pattern.image.size, pattern.relief, [&](const Vec2& uv) {
         const float wear = pattern.worn;
         const Vec2 ragged = {fbm(uv, 2 * cells, seed + 40, 3), fbm(uv, 2 * cells, seed + 50, 3)};
         const Vec2 panel = uv * static_cast<float>(pattern.panels);
@@ -123,6 +163,7 @@ PatternMaps make_rosettes(const RosettesPattern& pattern) {
         t.opacity = pattern.pierced && height < 0.05f ? 0.0f : 1.0f;
         return t;
     });
+    return with_odd_map(std::move(maps), pattern.odd, pattern.relief);
 }
 
 PatternMaps make_flutes(const FlutesPattern& pattern) {

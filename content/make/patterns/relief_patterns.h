@@ -18,6 +18,7 @@ struct BlocksPattern {
     float joint = 0.06f;
     float broken = 0.5f;
     float variation = 0.3f;
+    bool odd = false;
     Vec3 color = {0.46f, 0.40f, 0.31f};
     Vec3 joint_color = {0.20f, 0.17f, 0.13f};
 };
@@ -30,6 +31,7 @@ LIMN_FIELDS(BlocksPattern) {
     LIMN_FIELD(joint, "width of the joints / height of a course", "", 0, 0.3);
     LIMN_FIELD(broken, "how far edges and faces are broken away", "", 0, 1);
     LIMN_FIELD(variation, "from block to block", "", 0, 1);
+    LIMN_FIELD(odd, "the relief map is one for `detail` odd, of 512 pixels");
     LIMN_FIELD(color, .doc = "of the stone", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(joint_color, .doc = "of the joints", .min = 0, .max = 1, .color = true);
 }
@@ -41,6 +43,7 @@ struct RosettesPattern {
     int panels = 1;
     int petals = 8;
     bool pierced = false;
+    bool odd = false;
     float worn = 0.3f;
     Vec3 color = {0.50f, 0.45f, 0.36f};
 };
@@ -51,6 +54,7 @@ LIMN_FIELDS(RosettesPattern) {
     LIMN_FIELD(panels, "along each side of the image", "", 1, 16);
     LIMN_FIELD(petals, "of each ring", "", 3, 32);
     LIMN_FIELD(pierced, "holes around the flowers, for `detail` double_depth");
+    LIMN_FIELD(odd, "the relief map is one for `detail` odd, of 512 pixels");
     LIMN_FIELD(worn, "rounding and pits", "", 0, 1);
     LIMN_FIELD(color, .doc = "of the stone", .min = 0, .max = 1, .color = true);
 }
@@ -74,5 +78,9 @@ LIMN_FIELDS(FlutesPattern) {
 [[nodiscard]] PatternMaps make_blocks(const BlocksPattern& pattern);
 [[nodiscard]] PatternMaps make_rosettes(const RosettesPattern& pattern);
 [[nodiscard]] PatternMaps make_flutes(const FlutesPattern& pattern);
+
+/// The omni-directional displacement map (odd_map.h) of a relief map that is `depth` image widths
+/// deep.
+[[nodiscard]] ImageData make_odd_map(const ImageData& relief, float depth);
 
 }  // namespace limn

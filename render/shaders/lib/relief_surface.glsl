@@ -9,6 +9,7 @@
 //   RELIEF_RAYS      with KEY_SHADOWS: a second ray finds whether the key lights are visible
 //   RELIEF_BOTTOM    with SHADOW_CASTER: the depth of the bottom, so that no shadow falls on the relief itself
 //   RELIEF_DISPLACED the mesh is the relief: normals of the map, and nothing else
+//   RELIEF_ODD       one lookup in an omni-directional displacement map
 //   OBJECT_NORMALS   without relief: the normal map holds normals in mesh space
 // Techniques: bump.height-field, bump.object-space-map, relief.cap, relief.composite, relief.depth-correct, relief.double-depth, relief.filter,
 //     relief.parallax, relief.permutations, relief.planar, relief.self-shadow, relief.silhouette, relief.tangent,
@@ -34,6 +35,10 @@ float relief_lod = 0.0;  // of undisplaced texture coordinates: those found by t
 #define RELIEF_TEXEL(at) textureLod(material_maps[RELIEF_MAP], vec3(at, map_layer(map_layers, kReliefSlot)), relief_lod)
 #include "relief_gpu.h"
 #include "relief_search_gpu.h"
+#ifdef RELIEF_ODD
+#include "lib/odd_map.glsl"
+vec3 odd_normal = vec3(0.0, 0.0, 1.0);  // in tangent space
+#endif
 
 // Unit, away from the eye, of any projection.
 vec3 ray_through(vec3 position_ws, vec4 clip) {
@@ -162,6 +167,12 @@ void relief_uv(inout vec4 uv) {
 #endif
 #if defined(RELIEF_SKIPPED)
     float x = 1.0;
+#elif defined(RELIEF_ODD)
+    vec3 bitangent = cross(normal, tangent_ws.xyz) * tangent_ws.w;
+    vec3 to_viewer = vec3(-dot(ray_ws, tangent_ws.xyz), -dot(ray_ws, bitangent), down);
+    vec4 seen = odd_lookup(map_coordinates(kReliefSlot, uv), to_viewer, relief_lod - log2(float(kOddDirections)));
+    odd_normal = depth > 0.0 ? seen.xyz : odd_normal;
+    float x = seen.w;
 #elif defined(RELIEF_CONES)
     float x = relief_search_cones(ray, steps, refinements);
 #elif defined(RELIEF_LINEAR)
@@ -217,6 +228,9 @@ void relief_normal(inout vec3 normal) {
         dot(slope_uv, map_gradient(kReliefSlot, relief_travel(frame, tangent_ws.xyz))),
         dot(slope_uv, map_gradient(kReliefSlot, relief_travel(frame, bitangent))));
     normal.xy += normal.z * slope * material_texel(1).w;
+#elif defined(RELIEF_ODD)
+    float up = max(odd_normal.z, 0.05);
+    normal = vec3(normal.xy * up + normal.z * material_texel(1).w * odd_normal.xy, normal.z * up);
 #else
     vec2 n = MAP_TEXEL(RELIEF_MAP, kReliefSlot).xy * 2.0 - 1.0;
     float z = sqrt(max(1.0 - dot(n, n), 0.01));
