@@ -428,6 +428,7 @@ FrameOutput Renderer::draw(
         world, meshes_, camera.alpha, camera.previous_alpha,
         {eye.row[0].w, eye.row[1].w, eye.row[2].w});
     items_.update(world, meshes_, materials_, shapes_, camera.alpha);
+    items_.furs().upload(ring_);
     prepare_views();
     const auto end_time = std::chrono::steady_clock::now();
     draw_views();

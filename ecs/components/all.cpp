@@ -14,6 +14,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
 #include "ecs/components/framing.h"
+#include "ecs/components/fur.h"
 #include "ecs/components/furrows.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
@@ -116,6 +117,7 @@ void register_all_components() {
     register_component<MeshLevels>();
     register_component<Inflate>();
     register_component<ToonOutline>();
+    register_component<Fur>();
     register_component<SpeedLines>();
     register_component<Skeleton>();
     register_component<ClipPlayer>();

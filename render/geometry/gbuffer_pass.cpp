@@ -9,6 +9,7 @@
 #include "render/light/hatched_view.h"
 #include "render/light/light_pass.h"
 #include "render/light/lighting.h"
+#include "render/material/fur_hook.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
 #include "render/shaders/light_gpu.h"
@@ -71,7 +72,9 @@ bool GbufferEffect::prepare(const FrameData& frame, ViewData& view) {
     collector.collect(
         *frame.items, view.camera, view.velocity, *frame.ring, list, method.is_forward());
     if (method.shading != ShadingRate::Pixel || method.compared) {
-        for (DrawRun& run : list.opaque) {  // programs that light vertices draw the mesh alone
+        // Programs that light vertices draw the mesh alone.
+        std::erase_if(list.opaque, [](const DrawRun& run) { return is_fur(run.features); });
+        for (DrawRun& run : list.opaque) {
             remove_off_mesh_hooks(run.features);
         }
     }

@@ -4,11 +4,14 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
+#include "render/material/fur_hook.h"
 #include "render/material/relief_hook.h"
+#include "render/shaders/fur_gpu.h"
 #include "render/shaders/instance_gpu.h"
 #include "render/skinning/deformed_list.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +30,8 @@ constexpr std::uint16_t kHidden = 0xffff;
 /// How far coarse casters are moved back, in units of their geometric error: the error is measured
 /// across the surface, this along the light, which may be at a grazing angle.
 constexpr float kErrorScale = 1.5f;
+
+constexpr int kMaxShellStep = 8;  ///< of shells of distant fur
 
 // Of a draw that only compiles (RenderItems::sampled).
 constexpr std::uint32_t kSampledIndices = 3 * 64;
@@ -63,6 +68,20 @@ std::uint32_t mesh_index(const RenderItems& items, const DrawState& state) {
 
 const MeshRange& mesh_of(const RenderItems& items, const DrawState& state) {
     return items.meshes().meshes()[mesh_index(items, state)];
+}
+
+/// Whether a shell is needed: fur whose shells are closer than half a pixel is drawn with half,
+/// a quarter ... of them.
+bool is_needed(const RenderItemBlock& block, std::uint32_t i, const Vec4& depth_row, float pixels) {
+    const FurShell& shell = block.shells[i];
+    const float depth = glm::dot(Vec3(depth_row), block.boxes.center(i)) + depth_row.w;
+    const float spacing = shell.spacing * std::sqrt(largest_scale2(block.now[i].world)) * pixels
+                          / std::max(depth, 1e-6f);
+    int step = 1;
+    while (step < kMaxShellStep && 2 * static_cast<float>(step) * spacing < 1) {
+        step *= 2;
+    }
+    return pixels <= 0 || shell.index % step == 0;
 }
 
 /// Depth of an item's nearest point in the view of a CasterVolume.
@@ -118,6 +137,9 @@ void InstanceCollector::collect(
         .eye = {camera[0].w, camera[1].w, camera[2].w},
         .forward = {-camera[0].z, -camera[1].z, -camera[2].z},
         .previous_alpha = view.previous_alpha,
+        .depth_row = glm::row(view.clip_from_world, 3),
+        .pixels_per_unit = 0.5f * static_cast<float>(view.height)
+                           * glm::length(Vec3(glm::row(view.clip_from_world, 1))),
         .velocity = velocity,
         .hidden = view.hidden,
         .boxes = boxes};
@@ -132,6 +154,8 @@ void InstanceCollector::collect_casters(
         .shading = volume.shading,
         .eye = volume.eye,
         .range = volume.range,
+        .depth_row = volume.depth_row,
+        .pixels_per_unit = volume.texels_per_unit,
         .casters = &volume};
     collect_from(items, casters, ring, list);
 }
@@ -194,6 +218,10 @@ void InstanceCollector::count_block(
         work.local[i] = kHidden;
         if (visible[i] == 0 || (selection.casters != nullptr && is_blended(key))
             || is_part_of(items.world(), block.entities[i], selection.hidden)) {
+            continue;
+        }
+        if (!block.shells.empty()
+            && !is_needed(block, i, selection.depth_row, selection.pixels_per_unit)) {
             continue;
         }
         if (selection.casters != nullptr && selection.casters->detail > 0) {
@@ -273,7 +301,10 @@ void InstanceCollector::write_block(
         instances[slot] = {
             {a.row[0], a.row[1], a.row[2]},
             record,
-            (draw_state(kind.key).mirrored ? 1u : 0u) | materials.model_of(record) << 8,
+            (draw_state(kind.key).mirrored ? 1u : 0u)
+                | (block.shells.empty() ? 0u
+                                        : std::uint32_t{block.shells[i].fur} << layout::kFurShift)
+                | materials.model_of(record) << 8,
             slot,
             block.inflation(i)};
         if (selection.boxes) {
@@ -379,6 +410,10 @@ void InstanceCollector::add_command(
         list.without_tangents.push_back(mesh_index(items, state));
     }
     add_hooks(run.features, state.deformed ? items.shapes()[state.index].hooks : HookBits{});
+    if (state.shell) {
+        run.features.bits |= kAlphaMask;
+        run.features.hooks.set(kFurHook, kFurShell);
+    }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());

@@ -91,6 +91,9 @@ class InstanceCollector {
         Vec3 forward = {0, 0, 0};
         float range = INFINITY;
         float previous_alpha = 0;
+        // At `p`, pixels_per_unit / dot(depth_row, p) pixels or texels per meter.
+        Vec4 depth_row = {0, 0, 0, 1};
+        float pixels_per_unit = 0;
         bool velocity = false;
         const CasterVolume* casters = nullptr;  ///< null: not for shadow casters
         Entity hidden = {};

@@ -2,6 +2,7 @@
 
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
+#include "ecs/components/fur.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/shadow.h"
@@ -14,8 +15,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
-// Techniques: engine.projectile-instances, particle.mesh-particles, shade.inflate,
+// Techniques: engine.projectile-instances, particle.mesh-particles, shade.fur, shade.inflate,
 //     tex.toon-outline
 
 namespace limn {
@@ -105,6 +107,7 @@ void RenderItems::update(
         block.now = now;
         block.previous = previous;
         block.inflate = inflate;
+        block.shells = {};
         block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
         block.casts_shadows = !chunk.has<NoShadow>();
         block.inside_out_ = false;
@@ -118,6 +121,7 @@ void RenderItems::update(
     refreshed_ = refreshed;
     add_particles();
     add_outlines();
+    add_shells();
     epoch_ = world.core().epoch;
     version_ = world.version();
     mesh_revision_ = meshes.revision();
@@ -134,6 +138,7 @@ RenderItemBlock& RenderItems::add_block() {
     block.copies_.now.clear();
     block.copies_.previous.clear();
     block.copies_.inflate.clear();
+    block.copies_.shells.clear();
     block.inside_out_ = false;
     return block;
 }
@@ -145,6 +150,7 @@ void RenderItems::use_copies(RenderItemBlock& block) {
     block.now = copies.now;
     block.previous = copies.previous;
     block.inflate = copies.inflate;
+    block.shells = copies.shells;
     block.archetype_ = nullptr;
     refresh(block);
     size_ += copies.now.size();
@@ -205,12 +211,51 @@ void RenderItems::add_outlines() {
     }
 }
 
+/// One block per coat, its outermost shell first: those below are hidden by it.
+void RenderItems::add_shells() {
+    furs_.clear();
+    const auto* const jumps = world_->find_resource<StepJumps>();
+    const auto add = [&](Entity entity, const Fur& fur, const MeshInstance& surface,
+                         const WorldTransform& now, const PreviousWorldTransform* previous) {
+        const std::optional<std::uint8_t> number =
+            fur.length > 0 ? furs_.add(fur, surface.mesh, world_->resource<Assets>())
+                           : std::nullopt;
+        if (!number) {
+            return;
+        }
+        RenderItemBlock& block = add_block();
+        block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
+        block.casts_shadows = !world_->has<NoShadow>(entity);
+        RenderItemBlock::Copies& copies = block.copies_;
+        const bool own = fur.material.index != kNoAsset;
+        for (std::int32_t i = fur.shells - 1; i > 0; --i) {
+            copies.entities.push_back(entity);
+            copies.surfaces.push_back({surface.mesh, own ? fur.material : surface.material});
+            copies.now.push_back(now);
+            copies.previous.push_back(
+                previous != nullptr ? *previous : PreviousWorldTransform{now.world});
+            copies.inflate.push_back({shell_offset(fur, i)});
+            copies.shells.push_back(
+                {.fur = *number,
+                 .index = static_cast<std::uint8_t>(i),
+                 .spacing = fur.length / static_cast<float>(fur.shells),
+                 .lean = fur_lean(fur)});
+        }
+        use_copies(block);
+    };
+    world_
+        ->query<
+            const Fur, const MeshInstance, const WorldTransform,
+            Optional<const PreviousWorldTransform>>()
+        .each(add);
+}
+
 void RenderItems::refresh(RenderItemBlock& block) const {
     const std::vector<MeshRange>& meshes = meshes_->meshes();
     BoxBlock& boxes = block.boxes;
     block.hashed_ = false;
     const bool may_deform =
-        block.inside_out_
+        block.inside_out_ || !block.shells.empty()
         || (block.archetype_ != nullptr && block.archetype_->has(component_id<Deformed>));
     for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t mesh = block.surfaces[i].mesh.index;
@@ -222,7 +267,10 @@ void RenderItems::refresh(RenderItemBlock& block) const {
         float det = 1;
         if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
             const Bounds& own = deformed ? (*shapes_)[shape].bounds : meshes[mesh].bounds;
-            const Bounds local = moved_bounds(block, i, own);
+            Bounds local = moved_bounds(block, i, own);
+            if (!block.shells.empty()) {
+                local = inflated(local, {block.inflation(i) * block.shells[i].lean});
+            }
             const Affine a = block.world_at(i, time());
             const Vec3 box_center = transform_point(a, center(local));
             const Vec3 half = transform_half_extent(a, half_extent(local));
@@ -242,6 +290,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
             {.blended = materials_->batch(batch).blend,
              .inflated = !block.inflate.empty(),
              .deformed = deformed,
+             .shell = !block.shells.empty(),
              .mirrored = (det < 0) != block.inside_out_,
              .batch = batch,
              .index = deformed ? shape : mesh});
@@ -273,8 +322,9 @@ void RenderItems::hash_block(RenderItemBlock& block) const {
         const SurfaceFeatures& features = materials_->batch(state.batch).features;
         const bool by_material =
             features.has(kAlphaMask) || is_off_mesh(features) || is_tessellated(features);
-        const std::uint64_t what =
-            hash_combine(hash_combine(drawn, shape), by_material ? materials_->revision() : 0);
+        const std::uint64_t fur = block.shells.empty() ? 0 : furs_.hash(block.shells[i].fur);
+        const std::uint64_t what = hash_combine(
+            hash_combine(drawn, shape), (by_material ? materials_->revision() : 0) ^ fur);
         const Affine a = block.world_at(i, time());
         const float inflation = block.inflation(i);
         block.caster_hashes[i] =

@@ -4,6 +4,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
 #include "render/geometry/culling.h"
+#include "render/geometry/fur_list.h"
 #include "render/render_view.h"
 
 #include <cstdint>
@@ -29,17 +30,18 @@ class World;
 
 // Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world; and
 // so are outlines (ToonOutline): the same meshes, inflated and turned inside out, so that only
-// their far sides are drawn.
+// their far sides are drawn; and the shells of fur (Fur): the same meshes, inflated.
 
 /// Draw state of an item as a number, by which items are sorted and counted. From high bits to low:
-/// blended, inflated, deformed, batch (28 bits), mirrored, level of coarse triangles (3 bits),
-/// index of the mesh or, if deformed, of the deformed instance (29 bits).
+/// blended, inflated, deformed, shell, batch (27 bits), mirrored, level of coarse triangles (3
+/// bits), index of the mesh or, if deformed, of the deformed instance (29 bits).
 using DrawKey = std::uint64_t;
 
 struct DrawState {
     bool blended = false;
     bool inflated = false;
     bool deformed = false;
+    bool shell = false;  ///< of fur
     bool mirrored = false;
     std::uint32_t batch = 0;  ///< of MaterialPool
     std::uint32_t level = 0;  ///< 0: the mesh; n: MeshRange::coarse[n - 1], of shadow casters
@@ -48,9 +50,9 @@ struct DrawState {
 inline constexpr int kLevelBit = 29;
 [[nodiscard]] constexpr DrawKey make_draw_key(const DrawState& s) {
     return static_cast<DrawKey>(s.blended) << 63 | static_cast<DrawKey>(s.inflated) << 62
-           | static_cast<DrawKey>(s.deformed) << 61 | static_cast<DrawKey>(s.batch) << 33
-           | static_cast<DrawKey>(s.mirrored) << 32 | static_cast<DrawKey>(s.level) << kLevelBit
-           | s.index;
+           | static_cast<DrawKey>(s.deformed) << 61 | static_cast<DrawKey>(s.shell) << 60
+           | static_cast<DrawKey>(s.batch) << 33 | static_cast<DrawKey>(s.mirrored) << 32
+           | static_cast<DrawKey>(s.level) << kLevelBit | s.index;
 }
 [[nodiscard]] constexpr bool is_blended(DrawKey key) {
     return key >> 63 != 0;
@@ -60,8 +62,9 @@ inline constexpr int kLevelBit = 29;
         .blended = is_blended(key),
         .inflated = (key >> 62 & 1) != 0,
         .deformed = (key >> 61 & 1) != 0,
+        .shell = (key >> 60 & 1) != 0,
         .mirrored = (key >> 32 & 1) != 0,
-        .batch = static_cast<std::uint32_t>(key >> 33) & 0x0fffffffu,
+        .batch = static_cast<std::uint32_t>(key >> 33) & 0x07ffffffu,
         .level = static_cast<std::uint32_t>(key >> kLevelBit) & 7u,
         .index = static_cast<std::uint32_t>(key) & ((1u << kLevelBit) - 1)};
 }
@@ -74,6 +77,7 @@ struct RenderItemBlock {
     std::span<const WorldTransform> now;
     std::span<const PreviousWorldTransform> previous;  ///< empty: static
     std::span<const Inflate> inflate;                  ///< empty: not inflated
+    std::span<const FurShell> shells;                  ///< empty: not shells of fur
     const StepJumps* jumps = nullptr;                  ///< null: none in the last step
     bool casts_shadows = true;                         ///< no NoShadow
 
@@ -112,6 +116,7 @@ struct RenderItemBlock {
         std::vector<WorldTransform> now;
         std::vector<PreviousWorldTransform> previous;
         std::vector<Inflate> inflate;
+        std::vector<FurShell> shells;
     };
     Copies copies_;
     bool inside_out_ = false;  ///< back faces are drawn instead of front faces
@@ -146,6 +151,8 @@ class RenderItems {
     [[nodiscard]] const MeshPool& meshes() const { return *meshes_; }
     [[nodiscard]] const MaterialPool& materials() const { return *materials_; }
     [[nodiscard]] DeformedList& shapes() const { return *shapes_; }
+    [[nodiscard]] const FurList& furs() const { return furs_; }
+    [[nodiscard]] FurList& furs() { return furs_; }
     [[nodiscard]] StepTime time() const { return {alpha_, alpha_}; }
     [[nodiscard]] StepTime previous_time(float previous_alpha) const {
         return {previous_alpha, alpha_};
@@ -161,6 +168,7 @@ class RenderItems {
     /// `box` of a mesh, inflated and displaced.
     [[nodiscard]] Bounds
     moved_bounds(const RenderItemBlock& block, std::size_t i, const Bounds& box) const;
+    void add_shells();
     void refresh(RenderItemBlock& block) const;
     void hash_block(RenderItemBlock& block) const;
 
@@ -172,6 +180,7 @@ class RenderItems {
     const MeshPool* meshes_ = nullptr;
     const MaterialPool* materials_ = nullptr;
     DeformedList* shapes_ = nullptr;
+    FurList furs_;
     float alpha_ = 1;
     // State of the last update, to detect changes.
     std::uint32_t epoch_ = 0;

@@ -1,6 +1,7 @@
 #include "render/geometry/surface_draws.h"
 
 #include "render/geometry/mesh_pool.h"
+#include "render/geometry/render_items.h"
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
 #include "render/material/material_pool.h"
@@ -128,6 +129,7 @@ void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceL
     set_instance_streams(frame.meshes->streams().vertices(), list);
     set_instance_streams(frame.shapes->vertices().streams().vertices(), list);
     frame.materials->records().bind(device, layout::kMaterialsUnit);
+    frame.items->furs().bind(device);
     device.bind_indirect(list.commands.buffer);
 }
 

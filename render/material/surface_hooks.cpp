@@ -2,6 +2,7 @@
 
 #include "ecs/base/check.h"
 #include "ecs/components/surface.h"
+#include "render/material/fur_hook.h"
 #include "render/material/relief_hook.h"
 #include "render/material/surface_features.h"
 #include "render/material/wrinkle_hook.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr const SurfaceHook* kSurfaceHooks[] = {
     &kReliefHook,
     &kWrinkleHook,
+    &kFurHook,
 };
 static_assert(std::size(kSurfaceHooks) <= kMaxSurfaceHooks);
 

@@ -11,7 +11,8 @@ namespace limn::layout {
 struct InstanceRecord {
     vec4 row[3];   // world_from_mesh, current
     uint material;
-    uint flags;    // bit 0: mirrored, the determinant is negative; from bit 8: kModel* of lib/gbuffer.glsl
+    uint flags;    // bit 0: mirrored, the determinant is negative; then the number of its fur (fur_gpu.h); from bit 8:
+                   // kModel* of lib/gbuffer.glsl
     uint index;    // of this record in the frame
     float inflate; // distance by which vertices move along their normals, in mesh space [m]
 };

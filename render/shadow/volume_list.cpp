@@ -248,7 +248,8 @@ void VolumeCollector::find_casters(const RenderItems& items, const RenderView& v
     for (std::size_t b = 0; b < items.block_count(); ++b) {
         const RenderItemBlock& block = items.block(b);
         for (std::uint32_t i = 0; block.casts_shadows && i < block.size(); ++i) {
-            if (block.is_drawable(i) && !is_blended(block.keys[i])) {
+            const bool solid = !is_blended(block.keys[i]) && block.shells.empty();
+            if (block.is_drawable(i) && solid) {
                 add_item(items, block, i, view, frustum);
             }
         }

@@ -1,0 +1,32 @@
+#include "render/material/fur_hook.h"
+
+#include "render/material/surface_features.h"
+
+// Techniques: shade.fur
+
+namespace limn {
+namespace {
+
+constexpr HookPoint kFurPoints[] = {
+    HookPoint::Position, HookPoint::Vertex, HookPoint::Color, HookPoint::Sample};
+
+constexpr HookDefinition kFurDefinitions[] = {{kFurShell, "FUR_SHELL"}};
+
+}  // namespace
+
+const SurfaceHook kFurHook = {
+    .name = "fur",
+    .points = kFurPoints,
+    .definitions = kFurDefinitions,
+    .moving = kFurShell,
+    .position_file = "lib/fur_position.glsl",
+    .vertex_file = "lib/fur_vertex.glsl",
+    .surface_file = "lib/fur_surface.glsl",
+    .add = [](SurfaceFeatures&, std::uint16_t) {},
+};
+
+bool is_fur(const SurfaceFeatures& features) {
+    return features.hooks.of(kFurHook) != 0;
+}
+
+}  // namespace limn

@@ -1,0 +1,38 @@
+// A shell of a coat of fur: holes between strands, whose color gets lighter from root to tip, and their direction, by
+// which they are shaded. A surface hook. Definition:
+//   FUR_SHELL  the surface is one
+// Techniques: shade.fur
+
+#ifdef FUR_SHELL
+#include "lib/fur.glsl"
+#include "lib/fur_record.glsl"
+
+layout(location = 15) in vec3 fur_at;
+layout(location = 16) in vec3 fur_strand;
+
+FurPoint fur_here = FurPoint(false, vec4(0.5));
+#endif
+
+void fur_color(inout vec4 color) {
+#ifdef FUR_SHELL
+    uint flags = material_and_flags.y;
+    vec4 ends = fur_texel(flags, 3);
+    float scale = fur_scale(max(abs(dFdx(fur_at.xy)), abs(dFdy(fur_at.xy))));
+    fur_here = fur_point(fur_at.xy * scale, fur_at.z, fur_texel(flags, 2));
+    float brightness = 1.0 + fur_texel(flags, 4).x * (2.0 * fur_here.random.w - 1.0);
+    color.rgb *= mix(vec3(ends.w), ends.rgb, fur_at.z) * brightness;
+    color.rgb = min(color.rgb, 1.0);
+    color.a = fur_here.covered ? 1e4 : 0.0;  // whatever alpha vertices have, but for 0
+#endif
+}
+
+void fur_sample(inout SurfaceSample s, vec3 smooth_normal) {
+#ifdef FUR_SHELL
+    s.occlusion *= mix(fur_texel(material_and_flags.y, 3).w, 1.0, fur_at.z);
+#ifdef STRANDS
+    float unruly = fur_texel(material_and_flags.y, 2).w;
+    vec3 along = fur_strand * inversesqrt(max(dot(fur_strand, fur_strand), 1e-30));
+    s.strand_ws = normalize(along + unruly * (2.0 * fur_here.random.zyx - 1.0) + vec3(1e-6));
+#endif
+#endif
+}
