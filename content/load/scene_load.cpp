@@ -7,6 +7,7 @@
 #include "content/load/level/scene_warnings.h"
 #include "content/load/obj/obj_scene.h"
 #include "content/load/scene_bounds.h"
+#include "content/make/models/fur_coordinates.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/all.h"
@@ -104,6 +105,7 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
     insert_missing<FrameTime>(world);
     insert_missing<RandomSeed>(world);
     insert_missing<EventList>(world);
+    add_fur_coordinates(world);
     if (options.seed) {
         world.resource<RandomSeed>().seed = *options.seed;
     }

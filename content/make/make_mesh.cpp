@@ -4,6 +4,7 @@
 #include "content/make/models/bar.h"
 #include "content/make/models/boat.h"
 #include "content/make/models/fragments.h"
+#include "content/make/models/fur_strands.h"
 #include "content/make/models/hovercraft.h"
 #include "content/make/models/joined.h"
 #include "content/make/models/masonry.h"
@@ -61,6 +62,8 @@ std::span<const MeshKind> mesh_kinds() {
             "creature", "an animal on four legs that faces z, with skeleton, skin and clips"),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<FinsShape, make_fins>(
+            "fins", "cards of hair that stand on the edges of another mesh and move with it"),
         mesh_kind<FragmentsShape, make_fragments>(
             "fragments", "another mesh of the level, broken into pieces that can fly apart"),
         rigged_kind<HeadShape, make_head, make_head_rig>(
@@ -82,6 +85,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<SimplifiedShape, make_simplified>(
             "simplified", "another mesh of the level with fewer triangles, its skin and shapes"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a sphere with longitude and latitude as uv"),
+        mesh_kind<StrandsShape, make_strands>(
+            "strands", "strands of hair that grow on another mesh of the level and move with it"),
         mesh_kind<SweepShape, make_sweep>("sweep", "a profile swept along a path of the level"),
         mesh_kind<TeapotShape, make_teapot>(
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),

@@ -305,6 +305,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"shade.dielectric-specular",
      "specular weight and tint, KHR_materials_specular, KHR_materials_ior"},
     {"shade.dispersion", "dispersion, prism, Abbe number, chromatic refraction"},
+    {"shade.fur", "fur, coat, shells, strands of hair on any mesh"},
     {"shade.inflate", "inflate along normals, shells"},
     {"shade.lighting-space", "lighting in object, world or eye space"},
     {"shade.noise", "random noise in a shader"},

@@ -301,6 +301,21 @@ MorphTarget make_breath(const MeshData& mesh, std::size_t body_vertices) {
     return breath;
 }
 
+/// The alpha of colors: none around the eyes.
+void set_fur_length(MeshData& mesh) {
+    const Eye eyes[] = {make_eye(1), make_eye(-1)};
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const Vec3& p = mesh.positions[v];
+        float bare = 0;
+        for (const Eye& eye : eyes) {
+            const float near =
+                glm::smoothstep(2.2f, 1.3f, glm::distance(p, eye.center) / eye.radius);
+            bare = std::max(bare, near);
+        }
+        mesh.colors[v].w = creature_fur_length(p) * (1.0f - bare);
+    }
+}
+
 void scale_mesh(MeshData& mesh, float scale) {
     for (Vec3& p : mesh.positions) {
         p *= scale;
@@ -343,6 +358,7 @@ MeshData make_creature(const CreatureShape& shape) {
     generate_tangents(mesh);
     generate_morph_normals(mesh);
     generate_morph_tangents(mesh);
+    set_fur_length(mesh);
     scale_mesh(mesh, shape.height / fox::kHeight);
     update_bounds(mesh);
     return mesh;

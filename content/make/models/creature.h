@@ -8,8 +8,9 @@
 namespace limn {
 
 // A procedural fox-like animal: four slender legs, a pointed face, large ears, a bushy tail. Its
-// body is one closed surface around 24 joints (implicit_mesh.h) with vertex colors; eyes and lids
-// are separate closed surfaces. In the rest pose it faces +z and stands on y = 0.
+// body is one closed surface around 24 joints (implicit_mesh.h) with vertex colors, whose alpha is
+// the length of fur (Fur) relative to that of the tail. Eyes and lids are separate closed surfaces.
+// In the rest pose it faces +z and stands on y = 0.
 //
 // Morph targets: "blink" closes the lids, "breath" widens the chest. Clips: "idle", "walk", "run"
 // (creature_gait.h), in place: relative to the animal, the ground moves toward -z.

@@ -104,6 +104,24 @@ Vec3 creature_color(const Vec3& p, const Vec3& normal) {
     return color * (1.0f + 0.16f * noise);
 }
 
+float creature_fur_length(const Vec3& p) {
+    const float tail = from(-0.22f, -0.4f, p.z);
+    const float leg = from(0.36f, 0.2f, p.y) * (1.0f - tail);
+    const float paw = from(0.09f, 0.03f, p.y) * (1.0f - tail);
+    const float ruff = from(0.12f, 0.2f, p.z) * from(0.3f, 0.42f, p.y);
+    const float head = from(0.53f, 0.57f, p.y) * from(0.2f, 0.26f, p.z);
+    const float ear = from(0.67f, 0.72f, p.y);
+    const float muzzle = from(0.33f, 0.42f, p.z);
+    const float nose = from(0.022f, 0.035f, glm::distance(p, Vec3(0, 0.609f, 0.482f)));
+    float length = glm::mix(0.5f, 1.0f, tail);
+    length = glm::mix(length, 0.68f, ruff);
+    length = glm::mix(length, 0.22f, leg);
+    length = glm::mix(length, 0.1f, paw);
+    length = glm::mix(length, 0.3f, head);
+    length = glm::mix(length, 0.12f, ear);
+    return glm::mix(length, 0.1f, muzzle) * nose;
+}
+
 Vec3 creature_eye_color(float angle) {
     const Vec3 iris = glm::mix(fox::kIris, fox::kIrisEdge, from(0.6f, 1.05f, angle));
     return glm::mix(fox::kPupil, iris, from(0.5f, 0.62f, angle)) * from(1.35f, 1.1f, angle);

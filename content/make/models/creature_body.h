@@ -18,6 +18,9 @@ namespace limn {
 /// Linear color of fur, nose and claws.
 [[nodiscard]] Vec3 creature_color(const Vec3& p, const Vec3& normal);
 
+/// Length of fur, relative to the longest: that of the tail.
+[[nodiscard]] float creature_fur_length(const Vec3& p);
+
 /// Linear color at this angle from the view axis of the eye [rad].
 [[nodiscard]] Vec3 creature_eye_color(float angle);
 

@@ -40,23 +40,45 @@ void gather_influences(SkinWeights& skin, const std::vector<std::uint32_t>& sour
     skin = std::move(kept);
 }
 
-void gather_morph(MorphTarget& morph, const std::vector<std::uint32_t>& number) {
-    std::vector<std::uint32_t>
-        source;  // indices into the lists of the target, still sorted by vertex
-    std::vector<std::uint32_t> vertices;
+/// `old`: number of vertices before.
+void gather_morph(MorphTarget& morph, const std::vector<std::uint32_t>& source, std::size_t old) {
+    std::vector<std::uint32_t> entry(old, kUnused);  // of the target's lists, by vertex
     for (std::uint32_t i = 0; i < morph.vertices.size(); ++i) {
-        if (number[morph.vertices[i]] != kUnused) {
-            source.push_back(i);
-            vertices.push_back(number[morph.vertices[i]]);
+        entry[morph.vertices[i]] = i;
+    }
+    std::vector<std::uint32_t> entries;
+    std::vector<std::uint32_t> vertices;  // still sorted
+    for (std::uint32_t v = 0; v < source.size(); ++v) {
+        if (entry[source[v]] != kUnused) {
+            entries.push_back(entry[source[v]]);
+            vertices.push_back(v);
         }
     }
-    gather(morph.positions, source);
-    gather(morph.normals, source);
-    gather(morph.tangents, source);
+    gather(morph.positions, entries);
+    gather(morph.normals, entries);
+    gather(morph.tangents, entries);
     morph.vertices = std::move(vertices);
 }
 
 }  // namespace
+
+void gather_vertices(MeshData& mesh, const std::vector<std::uint32_t>& source) {
+    const std::size_t old = mesh.positions.size();
+    gather(mesh.positions, source);
+    gather(mesh.normals, source);
+    gather(mesh.tangents, source);
+    gather(mesh.uvs, source);
+    gather(mesh.uvs1, source);
+    gather(mesh.colors, source);
+    gather_influences(mesh.skin, source);
+    for (MorphTarget& morph : mesh.morphs) {
+        gather_morph(morph, source, old);
+    }
+    for (VertexRegion& region : mesh.regions) {
+        gather(region.weights, source);
+        gather(region.across, source);
+    }
+}
 
 void keep_triangles(MeshData& mesh, std::vector<std::uint32_t> indices) {
     std::vector<std::uint32_t> number(mesh.positions.size(), kUnused);
@@ -75,20 +97,7 @@ void keep_triangles(MeshData& mesh, std::vector<std::uint32_t> indices) {
     }
     mesh.indices = std::move(indices);
     mesh.pieces.clear();
-    gather(mesh.positions, source);
-    gather(mesh.normals, source);
-    gather(mesh.tangents, source);
-    gather(mesh.uvs, source);
-    gather(mesh.uvs1, source);
-    gather(mesh.colors, source);
-    gather_influences(mesh.skin, source);
-    for (MorphTarget& morph : mesh.morphs) {
-        gather_morph(morph, number);
-    }
-    for (VertexRegion& region : mesh.regions) {
-        gather(region.weights, source);
-        gather(region.across, source);
-    }
+    gather_vertices(mesh, source);
 }
 
 }  // namespace limn

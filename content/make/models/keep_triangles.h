@@ -12,4 +12,8 @@ struct MeshData;
 /// keeps `bounds`.
 void keep_triangles(MeshData& mesh, std::vector<std::uint32_t> indices);
 
+/// Replaces the vertices of `mesh` by copies of them: new vertex i is old vertex source[i], with
+/// its skin weights, morph targets and regions. Indices stay as they are.
+void gather_vertices(MeshData& mesh, const std::vector<std::uint32_t>& source);
+
 }  // namespace limn
