@@ -186,6 +186,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     add_shading_models(variant, frame.materials->shading_models());
     add_layers(variant, frame.materials->layers());
     variant.add_if(frame.materials->key_shadows(), "KEY_SHADOWS");
+    variant.add_if(frame.materials->bump_shadows(), "SMOOTH_NORMALS");
     return true;
 }
 

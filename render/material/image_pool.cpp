@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "render/gpu/device.h"
+#include "render/material/normal_mips.h"
 #include "render/shaders/material_maps_gpu.h"
 
 #include <algorithm>
@@ -41,6 +42,17 @@ bool is_valid_image(const ImageData& image, int limit) {
            && image.pixels.size() >= image_bytes(image);
 }
 
+PixelFormat pixel_format(GLenum format) {
+    return format == GL_RGBA16F   ? PixelFormat::Rgba16F
+           : format == GL_RGBA32F ? PixelFormat::Rgba32F
+                                  : PixelFormat::Rgba8;
+}
+
+/// Whether a normal map needs mip levels that say more than those it has.
+bool lacks(const std::optional<NormalMips>& has, NormalMips wanted) {
+    return !has || *has < wanted;
+}
+
 gpu::TextureDesc array_of(const ImageData& image) {
     return {
         .format = image_format(image).format,
@@ -73,13 +85,10 @@ void ImagePool::clear() {
     arrays_.push_back({std::move(magenta), {}});
 }
 
-void ImagePool::update(std::span<const ImageData> images) {
+void ImagePool::update(std::span<const ImageData> images, const NormalMaps& normal_maps) {
     const std::size_t first = images_.size();
-    if (first >= images.size()) {
-        return;
-    }
     const std::size_t first_array = arrays_.size();
-    for (const gpu::TextureDesc& desc : allocate_layers(images)) {
+    for (const gpu::TextureDesc& desc : allocate_layers(images, normal_maps)) {
         create_array(desc);
     }
     for (std::size_t i = first; i < images.size(); ++i) {
@@ -101,6 +110,35 @@ void ImagePool::update(std::span<const ImageData> images) {
                 images[i].name, array.desc().format, static_cast<int>(images_[i].location.layer));
         }
     }
+    for (const auto& [index, mips] : normal_maps) {
+        if (index < images.size() && lacks(images_[index].normals, mips)) {
+            upload_normals(images_[index], images[index], mips);
+        }
+    }
+}
+
+void ImagePool::upload_normals(Image& image, const ImageData& data, NormalMips mips) {
+    image.normals = mips;
+    if (image.location.array == 0) {
+        return;
+    }
+    Array& array = arrays_[image.location.array];
+    array.has_normals = true;
+    int level = 0;
+    for (const NormalLevel& texels : make_normal_levels(data, mips)) {
+        if (!texels.normals.empty()) {
+            array.texture.upload<std::uint8_t>(
+                texels.normals, GL_RGBA, image_format(data).type, level,
+                static_cast<int>(image.location.layer));
+        }
+        if (!texels.spread.empty()) {
+            arrays_[image.spread.array].texture.upload<std::uint8_t>(
+                texels.spread, GL_RGBA, GL_UNSIGNED_BYTE, level,
+                static_cast<int>(image.spread.layer));
+        }
+        ++level;
+    }
+    arrays_[image.spread.array].has_normals |= image.spread.array != 0;
 }
 
 void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
@@ -108,19 +146,56 @@ void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
     if (location.array == 0) {
         return;
     }
-    gpu::Texture& array = arrays_[location.array].texture;
-    gpu::TextureDesc level = array.desc();
+    Array& array = arrays_[location.array];
+    gpu::TextureDesc level = array.texture.desc();
     level.levels = 1;
     level.depth = 1;
-    if (pixels.size() == gpu::texture_bytes(level)) {
-        array.upload(std::as_bytes(pixels), 0, static_cast<int>(location.layer));
-        array.generate_mipmaps();  // all layers: Mesa ignores a view of one layer
+    if (pixels.size() != gpu::texture_bytes(level)) {
+        return;
+    }
+    if (!array.has_normals) {
+        array.texture.upload(std::as_bytes(pixels), 0, static_cast<int>(location.layer));
+        array.texture.generate_mipmaps();  // all layers: Mesa ignores a view of one layer
+        return;
+    }
+    level.levels = array.texture.desc().levels;
+    level.target = GL_TEXTURE_2D;
+    gpu::Texture single("replaced image", level);
+    single.upload(std::as_bytes(pixels));
+    single.generate_mipmaps();
+    single.copy_to(array.texture, static_cast<int>(location.layer));
+    Image& image = images_[id.index];
+    if (image.normals) {
+        ImageData data = {
+            .name = {},
+            .width = level.width,
+            .height = level.height,
+            .format = pixel_format(level.format),
+            .pixels = {pixels.begin(), pixels.end()}};
+        upload_normals(image, data, *image.normals);
     }
 }
 
-std::vector<gpu::TextureDesc> ImagePool::allocate_layers(std::span<const ImageData> images) {
-    const int max_size = device_.caps().max_texture_size;
+ImageLayer ImagePool::allocate_layer(
+    std::vector<gpu::TextureDesc>& arrays, const gpu::TextureDesc& wanted) const {
     const int max_layers = std::min(device_.caps().max_texture_layers, 1 << layout::kLayerBits);
+    const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& array) {
+        return has_room(array, wanted, max_layers);
+    });
+    const auto index = static_cast<std::uint32_t>(found - arrays.begin());
+    if (found == arrays.end()) {
+        arrays.push_back(wanted);
+    } else {
+        ++found->depth;
+    }
+    return {
+        static_cast<std::uint32_t>(arrays_.size()) + index,
+        static_cast<std::uint32_t>(arrays[index].depth) - 1};
+}
+
+std::vector<gpu::TextureDesc>
+ImagePool::allocate_layers(std::span<const ImageData> images, const NormalMaps& normal_maps) {
+    const int max_size = device_.caps().max_texture_size;
     std::vector<gpu::TextureDesc> arrays;
     for (std::size_t i = images_.size(); i < images.size(); ++i) {
         const ImageData& image = images[i];
@@ -132,19 +207,15 @@ std::vector<gpu::TextureDesc> ImagePool::allocate_layers(std::span<const ImageDa
                 image.name, image.width, image.height, image.pixels.size(), max_size);
             continue;
         }
-        const gpu::TextureDesc wanted = array_of(image);
-        const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& array) {
-            return has_room(array, wanted, max_layers);
-        });
-        const auto index = static_cast<std::uint32_t>(found - arrays.begin());
-        if (found == arrays.end()) {
-            arrays.push_back(wanted);
-        } else {
-            ++found->depth;
+        images_.back().location = allocate_layer(arrays, array_of(image));
+    }
+    for (const auto& [index, mips] : normal_maps) {
+        if (index < images.size() && mips != NormalMips::Plain && images_[index].spread.array == 0
+            && images_[index].location.array != 0) {
+            gpu::TextureDesc spread = array_of(images[index]);
+            spread.format = GL_RGBA8;
+            images_[index].spread = allocate_layer(arrays, spread);
         }
-        images_.back().location = {
-            static_cast<std::uint32_t>(arrays_.size()) + index,
-            static_cast<std::uint32_t>(arrays[index].depth) - 1};
     }
     return arrays;
 }

@@ -4,6 +4,8 @@
 #include "render/gpu/texture.h"
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +20,12 @@ class Device;
 // An image that is missing, broken or too large is magenta.
 //
 // Images are only added: images of one update() share arrays, later ones get new arrays.
+//
+// Normal maps have mip levels of their own (normal_mips.h), and a second image, their spread, if
+// materials want to know it. Images that a pass draws on the GPU get those of any other image.
+
+/// By image: how the normal maps among them are filtered.
+using NormalMaps = std::map<std::uint32_t, NormalMips>;
 
 /// Location of an image.
 struct ImageLayer {
@@ -30,8 +38,9 @@ class ImagePool {
     explicit ImagePool(gpu::Device& device);
 
     void clear();
-    /// Uploads the images beyond size().
-    void update(std::span<const ImageData> images);
+    /// Uploads the images beyond size(), and what normal maps lack. A spread that was once made
+    /// stays.
+    void update(std::span<const ImageData> images, const NormalMaps& normal_maps = {});
     [[nodiscard]] std::size_t size() const { return images_.size(); }
     /// Replaces the pixels of an image, in its own format and the layout of ImageData; does nothing
     /// if there is no such image or the size differs.
@@ -40,6 +49,10 @@ class ImagePool {
     /// Magenta if there is no such image.
     [[nodiscard]] ImageLayer find(ImageId id) const {
         return id.index < images_.size() ? images_[id.index].location : ImageLayer{};
+    }
+    /// The spread of a normal map; array 0 if it has none.
+    [[nodiscard]] ImageLayer find_spread(ImageId id) const {
+        return id.index < images_.size() ? images_[id.index].spread : ImageLayer{};
     }
     /// The image as a texture of its own; null if there is no such image, or it is broken.
     [[nodiscard]] const gpu::Texture* find_texture(ImageId id) const {
@@ -57,15 +70,22 @@ class ImagePool {
     struct Array {
         gpu::Texture texture;
         gpu::Texture encoded;
+        bool has_normals = false;  ///< some layers have mip levels of their own
     };
     struct Image {
         ImageLayer location;
         gpu::Texture texture;  ///< a view of its layer
+        ImageLayer spread;
+        std::optional<NormalMips> normals;  ///< of a normal map
     };
 
-    /// Assigns layers to new images; returns the arrays to create.
-    [[nodiscard]] std::vector<gpu::TextureDesc> allocate_layers(std::span<const ImageData> images);
+    /// Assigns layers to new images and spreads; returns the arrays to create.
+    [[nodiscard]] std::vector<gpu::TextureDesc>
+    allocate_layers(std::span<const ImageData> images, const NormalMaps& normal_maps);
+    [[nodiscard]] ImageLayer
+    allocate_layer(std::vector<gpu::TextureDesc>& arrays, const gpu::TextureDesc& wanted) const;
     void create_array(const gpu::TextureDesc& desc);
+    void upload_normals(Image& image, const ImageData& data, NormalMips mips);
 
     gpu::Device& device_;
     std::vector<Array> arrays_;

@@ -33,8 +33,9 @@ std::optional<layout::ClassicBlock> make_classic_block(const Material& m) {
     const bool classic = m.shading == ShadingModel::Blinn || m.shading == ShadingModel::Phong
                          || m.shading == ShadingModel::Skin || m.shading == ShadingModel::Toon
                          || m.shading == ShadingModel::Strand;
-    return classic ? std::optional(
-               layout::ClassicBlock{.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f))})
+    const float shininess = std::max(m.shininess, 1e-3f);
+    return classic ? std::optional(layout::ClassicBlock{
+               .specular = Vec4(m.specular, has_wide_highlights(m) ? -shininess : shininess)})
                    : std::nullopt;
 }
 
@@ -189,6 +190,12 @@ constexpr bool kinds_fit() {
 static_assert(kinds_fit());
 
 }  // namespace
+
+bool has_wide_highlights(const Material& m) {
+    return m.normal_mips != NormalMips::Plain && is_used(m.normal_texture)
+           && (m.shading == ShadingModel::Blinn || m.shading == ShadingModel::Phong
+               || m.shading == ShadingModel::Skin);
+}
 
 Vec4 append_blocks(const Material& material, std::vector<Vec4>& blocks) {
     const std::size_t first = blocks.size();

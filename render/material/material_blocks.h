@@ -15,4 +15,8 @@ struct Material;
 /// the front of `blocks`.
 [[nodiscard]] Vec4 append_blocks(const Material& material, std::vector<Vec4>& blocks);
 
+/// Whether the roughness of its surface samples is not its own but that of the bumps which mip
+/// levels of its normal map average (normal_mips.h): it lowers the shininess.
+[[nodiscard]] bool has_wide_highlights(const Material& material);
+
 }  // namespace limn

@@ -24,12 +24,18 @@ bool has_specular(const Material& m) {
 
 }  // namespace
 
+bool has_lean_normals(const Material& m) {
+    return m.shading == ShadingModel::Pbr && m.normal_mips == NormalMips::Lean && m.anisotropy <= 0
+           && layer_has_image(m.normal_texture) && m.detail != SurfaceDetail::ObjectNormal;
+}
+
 MaterialLayers layers_of(const Material& m) {
     if (m.shading != ShadingModel::Pbr) {
         return 0;
     }
     return (has_specular(m) ? kSpecularLayer : 0u) | (m.clearcoat > 0 ? kCoatLayer : 0u)
-           | (m.sheen != Vec3(0) ? kSheenLayer : 0u) | (m.anisotropy > 0 ? kAnisotropyLayer : 0u)
+           | (m.sheen != Vec3(0) ? kSheenLayer : 0u)
+           | (m.anisotropy > 0 || has_lean_normals(m) ? kAnisotropyLayer : 0u)
            | (m.iridescence > 0 ? kFilmLayer : 0u);
 }
 
@@ -42,7 +48,9 @@ std::optional<layout::LayersBlock> make_layers_block(const Material& m) {
     const Vec2& thickness = m.iridescence_thickness;
     return layout::LayersBlock{
         .specular = Vec4(head_on * m.specular_tint, m.specular_weight),
-        .coat = {m.clearcoat, m.clearcoat_roughness, m.anisotropy, m.iridescence},
+        .coat =
+            {m.clearcoat, m.clearcoat_roughness, has_lean_normals(m) ? 1.0f : m.anisotropy,
+             m.iridescence},
         .sheen = Vec4(m.sheen, m.sheen_roughness),
         .film =
             {m.iridescence_index, has_range ? thickness.x : thickness.y, thickness.y,

@@ -27,6 +27,10 @@ enum MaterialLayer : std::uint32_t {
 /// A set of MaterialLayer.
 using MaterialLayers = std::uint32_t;
 
+/// Whether its highlights stretch as the bumps that mip levels of its normal map average
+/// (normal_mips.h): of Pbr without an anisotropy of its own. Others only widen.
+[[nodiscard]] bool has_lean_normals(const Material& material);
+
 /// Those with any effect.
 [[nodiscard]] MaterialLayers layers_of(const Material& material);
 

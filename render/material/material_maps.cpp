@@ -39,6 +39,7 @@ constexpr MapSlot kSlots[] = {
      kFilmLayer},
     {layout::kIridescenceThicknessSlot, "IRIDESCENCE_THICKNESS_MAP",
      &Material::iridescence_thickness_texture, false, kFilmLayer},
+    {layout::kNormalSpreadSlot, "NORMAL_SPREAD_MAP", &Material::normal_texture, false},
 };
 
 constexpr bool numbers_fit() {
@@ -74,7 +75,15 @@ std::span<const MapSlot> map_slots() {
     return kSlots;
 }
 
+NormalMips normal_mips_of(const Material& m) {
+    const bool has_slopes = m.detail != SurfaceDetail::ObjectNormal;
+    return has_slopes ? m.normal_mips : std::min(m.normal_mips, NormalMips::Toksvig);
+}
+
 bool has_map(const Material& material, const MapSlot& slot) {
+    if (slot.number == layout::kNormalSpreadSlot && material.normal_mips == NormalMips::Plain) {
+        return false;
+    }
     const bool is_of_strands =
         slot.number == layout::kAnisotropySlot && material.shading == ShadingModel::Strand;
     return is_used(material.*slot.texture)

@@ -30,6 +30,9 @@ struct MapSlot {
     return slot.image.index != kNoAsset;
 }
 
+/// How its normal map is filtered. Normals in mesh space have no slopes.
+[[nodiscard]] NormalMips normal_mips_of(const Material& material);
+
 /// Whether a material has and reads this map.
 [[nodiscard]] bool has_map(const Material& material, const MapSlot& slot);
 

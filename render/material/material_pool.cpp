@@ -27,7 +27,9 @@ layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks)
     return {
         .base_color = m.base_color * Vec4(skin_tone(m), 1.0f),
         .emission = Vec4(m.emission, m.normal_scale),
-        .factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff},
+        .factors =
+            {m.metalness, has_wide_highlights(m) ? 0.0f : m.roughness, m.occlusion_strength,
+             m.alpha_cutoff},
         .blocks = append_blocks(m, blocks),
         .maps = {}};
 }
@@ -36,10 +38,31 @@ bool has_strands(ShadingModel model) {
     return model == ShadingModel::Hair || model == ShadingModel::Strand;
 }
 
+/// SurfaceFeature.
+std::uint32_t bump_feature(BumpShadow shadow) {
+    constexpr std::uint32_t kFeatures[] = {0, kBumpGate, kBumpSmooth, kBumpRamp};
+    return kFeatures[static_cast<std::size_t>(shadow)];
+}
+
 GLenum wrap_mode(Wrap wrap) {
     return wrap == Wrap::Repeat   ? GL_REPEAT
            : wrap == Wrap::Mirror ? GL_MIRRORED_REPEAT
                                   : GL_CLAMP_TO_EDGE;
+}
+
+/// An image of several materials is filtered as the most demanding of them says. Plain ones are as
+/// any other image: shaders normalize their means.
+NormalMaps normal_maps_of(const Assets& assets) {
+    NormalMaps maps;
+    for (const Material& m : assets.materials) {
+        const std::uint32_t image = m.normal_texture.image.index;
+        if (image < assets.images.size() && !assets.images[image].srgb
+            && normal_mips_of(m) != NormalMips::Plain) {
+            NormalMips& mips = maps.try_emplace(image, NormalMips::Plain).first->second;
+            mips = std::max(mips, normal_mips_of(m));
+        }
+    }
+    return maps;
 }
 
 }  // namespace
@@ -59,11 +82,11 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
         material_version_ = 0;
     }
     const bool more_images = images_.size() < assets.images.size();
-    images_.update(assets.images);
     if (!fresh && !more_images && limit_ == limit && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {
         return;
     }
+    images_.update(assets.images, normal_maps_of(assets));
 
     ++revision_;
     records_.clear();
@@ -79,6 +102,7 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
     curves_ = false;
     key_shadows_ = false;
     displaces_ = false;
+    bump_shadows_ = false;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
@@ -122,7 +146,12 @@ void MaterialPool::add_maps(
             batch.features.bits |= kOcclusionShared;
             continue;
         }
-        const ImageLayer image = images_.find(texture.image);
+        const ImageLayer image = slot.number == layout::kNormalSpreadSlot
+                                     ? images_.find_spread(texture.image)
+                                     : images_.find(texture.image);
+        if (slot.number == layout::kNormalSpreadSlot && image.array == 0) {
+            continue;
+        }
         const bool encoded = slot.number == layout::kBaseColorSlot && images_.encoded(image.array);
         const auto unit = bindings.add(
             {.array = image.array,
@@ -170,7 +199,13 @@ void MaterialPool::add_material(const Material& material) {
     const MaterialLayers layers = layers_of(material);
     batch.features.bits |= layers != 0 ? kLayered : 0u;
     batch.features.bits |= (layers & kAnisotropyLayer) != 0 ? kAnisotropic : 0u;
+    batch.features.bits |= has_lean_normals(material) ? kLeanNormals : 0u;
+    batch.features.bits |= bump_feature(material.bump_shadow);
     add_maps(material, batch, record);
+    if (batch.features.maps.has(layout::kNormalSlot)
+        && (material.shading == ShadingModel::Blinn || material.shading == ShadingModel::Phong)) {
+        batch.features.bits |= kClassicBumps;
+    }
 
     const auto same = [&](const SurfaceBatch& b) {
         return b.features == batch.features && b.blend == batch.blend
@@ -193,6 +228,7 @@ void MaterialPool::add_material(const Material& material) {
     models_.push_back(static_cast<std::uint8_t>(model));
     shading_models_ |= 1u << model;
     layers_ |= layers;
+    bump_shadows_ = bump_shadows_ || material.bump_shadow != BumpShadow::None;
     diffuses_ =
         diffuses_ || (material.shading == ShadingModel::Subsurface && material.scatter != Vec3(0));
 }

@@ -42,9 +42,9 @@ class MaterialPool {
     MaterialPool(gpu::Device& device, float anisotropy);
 
     /// Uploads changes of `assets`: new images, and all materials if any were added or their
-    /// version changed. `fresh`: the assets were replaced since the last call. Materials with dearer
-    /// surface detail than `limit` fall to it. A map that would need one texture array more than a
-    /// material has units is left out, with an error.
+    /// version changed. `fresh`: the assets were replaced since the last call. Materials with
+    /// dearer surface detail than `limit` fall to it. A map that would need one texture array more
+    /// than a material has units is left out, with an error.
     void update(const Assets& assets, bool fresh, DetailLimit limit = DetailLimit::Full);
 
     /// Record index of a material; 0 for none, 1 for an unknown one.
@@ -77,6 +77,8 @@ class MaterialPool {
     }
     /// Whether some material does.
     [[nodiscard]] bool displaces() const { return displaces_; }
+    /// Whether some material has a BumpShadow.
+    [[nodiscard]] bool bump_shadows() const { return bump_shadows_; }
 
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
@@ -118,6 +120,7 @@ class MaterialPool {
     bool key_shadows_ = false;
     bool displaces_ = false;
     bool reported_tessellation_ = false;
+    bool bump_shadows_ = false;
 };
 
 }  // namespace limn

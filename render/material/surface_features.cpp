@@ -28,6 +28,11 @@ constexpr FeatureName kNames[] = {
     {kLayered, "LAYERED_SURFACE"},
     {kAnisotropic, "ANISOTROPIC"},
     {kDispersion, "DISPERSION"},
+    {kLeanNormals, "LEAN_NORMALS"},
+    {kBumpGate, "BUMP_GATE"},
+    {kBumpSmooth, "BUMP_SMOOTH"},
+    {kBumpRamp, "BUMP_RAMP"},
+    {kClassicBumps, "CLASSIC_BUMPS"},
 };
 
 constexpr bool has_bits_of_their_own() {

@@ -29,6 +29,11 @@ enum SurfaceFeature : std::uint32_t {
     kLayered = 1u << 13,      // material_layers.h
     kAnisotropic = 1u << 14,  // with kLayered
     kDispersion = 1u << 15,   // with kRefraction
+    kLeanNormals = 1u << 16,  // with kAnisotropic: as the normal map's bumps are
+    kBumpGate = 1u << 17,     // BumpShadow
+    kBumpSmooth = 1u << 18,
+    kBumpRamp = 1u << 19,
+    kClassicBumps = 1u << 20,  // of Blinn and Phong, with a normal map (bump_strategy.h)
 };
 
 struct SurfaceFeatures {

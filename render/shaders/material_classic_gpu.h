@@ -7,7 +7,7 @@ namespace limn::layout {
 #endif
 
 struct ClassicBlock {
-    vec4 specular;  // ks; w: shininess
+    vec4 specular;  // ks; w: shininess, negative if the roughness of surface samples lowers it
 };
 
 #ifdef __cplusplus

@@ -27,6 +27,7 @@ const uint kSpecularTintSlot = 15u;
 const uint kAnisotropySlot = 16u;           // rg: direction along tangent and bitangent, b: strength
 const uint kIridescenceSlot = 17u;          // r
 const uint kIridescenceThicknessSlot = 18u; // g
+const uint kNormalSpreadSlot = 19u;         // of the normal map: render/material/normal_mips.h
 
 const uint kMaxMapSlots = 24u;
 

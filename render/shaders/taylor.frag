@@ -23,7 +23,7 @@ void main() {
     albedo *= max(vertex_color.rgb, 0.0);
 #endif
     vec4 shine = block_texel(material_and_flags.x, kClassicBlock, 0);
-    float exponent = blinn_exponent(material_and_flags.y >> 8, shine.a);
+    float exponent = blinn_exponent(material_and_flags.y >> 8, abs(shine.a));
     mat2x3 light = mat2x3(diffuse, specular);
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
         vec4 l = light_vector[k];

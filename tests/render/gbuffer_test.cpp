@@ -257,6 +257,7 @@ TEST_CASE_FIXTURE(
                                "    s.bounces = x.w == 0.0;\n"
                                "    s.raised = s.bounces ? 1.0 : x.w;\n"
                                "    s.fades = x.w > 0.5;\n"
+                               "    s.bump_shadow = 0u;\n"
                                "    s.smooth_is_stored = smooth_is_stored;\n"
                                "    return unpack_surface(pack_surface(s));\n"
                                "}\n";

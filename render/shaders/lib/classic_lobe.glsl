@@ -1,18 +1,27 @@
 // The response of Blinn, Phong and Skin to one light. They share this code, since a software OpenGL would evaluate the
 // power of each model for every pixel. Reflector::own: x = shininess, yzw = added to n.l.
-// Techniques: fakephong.illum-blinn, fakephong.illum-phong, fakephong.vectors, skin.blinn,
+// Techniques: bump.mipmap, fakephong.illum-blinn, fakephong.illum-phong, fakephong.vectors, skin.blinn,
 //     wrinkle.compression.lighting
 
 #include "lib/brdf.glsl"
 #include "lib/material_record.glsl"
 
+// The shininess n of normals whose slopes have this variance about their mean, and the brightness of the highlight, which
+// keeps its energy (Toksvig 2005).
+vec2 wider_highlight(float n, float variance) {
+    float wide = n / (1.0 + n * variance);
+    return vec2(wide, (1.0 + wide) / (1.0 + n));
+}
+
 // Nothing is added to n.l, and the environment is not mirrored.
 void prepare_classic(inout Reflector r, SurfaceSample s) {
     vec4 specular = block_texel(s.material, kClassicBlock, 0);
+    float alpha = s.roughness * s.roughness;
+    vec2 highlight = wider_highlight(abs(specular.a), specular.a < 0.0 ? 0.5 * alpha * alpha : 0.0);
     r.diffuse = s.albedo;
-    r.specular_0 = specular.rgb;
+    r.specular_0 = specular.rgb * highlight.y;
     r.mirror = vec3(0.0);
-    r.own = vec4(specular.a, 0.0, 0.0, 0.0);
+    r.own = vec4(highlight.x, 0.0, 0.0, 0.0);
 }
 
 Response lobe_classic(Reflector r, Cosines c) {

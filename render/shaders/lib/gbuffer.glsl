@@ -10,8 +10,10 @@
 // For Unlit, albedo is the mirrored fraction and its color is in emission. Wrinkled skin that needs its smooth normal
 // when lit (SMOOTH_NORMALS) emits nothing: w is
 //
-//     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9, 0: folds that light bounces in,  fades 1
+//     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9,  fades 1
 //
+// A weight of 0 is that of folds that light bounces in; 1 and 2 stand for SurfaceSample::bump_shadow, and there for the
+// weight 1. So do other surfaces whose bumps are not lit from behind the mesh: their smooth normal is that of the mesh,
 // and the shading model has its highest bit set. Hair and Strand emit nothing: w is
 //
 //     w   direction of the strand, octahedral 16 + 16, or 0: unknown
@@ -25,7 +27,7 @@
 #include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"
 
-#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE) || defined(WRINKLE_BOUNCE)) && !defined(SMOOTH_NORMALS)
+#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE) || defined(WRINKLE_BOUNCE) || defined(BUMP_GATE) || defined(BUMP_SMOOTH) || defined(BUMP_RAMP)) && !defined(SMOOTH_NORMALS)
 #define SMOOTH_NORMALS
 #endif
 #if defined(WRINKLE_BLEND) && !defined(BLENDED_SKIN)
@@ -80,6 +82,7 @@ struct SurfaceSample {
     float raised;           // weight of lighting by normal_ws; the rest is by smooth_normal_ws
     bool bounces;           // light bounces within the folds, whose normal is normal_ws; raised is 1
     bool fades;             // light at grazing angles to smooth_normal_ws fades
+    uint bump_shadow;       // kBump*: how light from behind smooth_normal_ws is left out; 0: it is not
     bool smooth_is_stored;  // otherwise raised is 1
 #endif
 #ifdef STRANDS
@@ -93,6 +96,8 @@ struct SurfaceSample {
 #endif
 };
 
+const uint kBumpGated = 1u;     // with a hard border
+const uint kBumpSmoothed = 2u;  // times the cosine
 const uint kSmoothNormalBit = 16u;  // of the stored shading model
 
 // Clears the members that only wrinkled skin, strands and layered surfaces use.
@@ -102,6 +107,7 @@ void set_plain(inout SurfaceSample s) {
     s.raised = 1.0;
     s.bounces = false;
     s.fades = false;
+    s.bump_shadow = 0u;
     s.smooth_is_stored = false;
 #endif
 #ifdef STRANDS
@@ -151,7 +157,8 @@ const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, 
 #ifdef SMOOTH_NORMALS
 uint pack_smooth_normal(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.smooth_normal_ws) * 1023.0 + 1024.5, 1.0, 2047.0));
-    uint raised = s.bounces ? 0u : max(uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5), 1u);
+    uint raised = s.bounces ? 0u : max(uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5), kBumpSmoothed + 1u);
+    raised = s.bump_shadow > 0u ? s.bump_shadow : raised;
     return n.x | n.y << 11 | raised << 22 | (s.fades ? 1u : 0u) << 31;
 }
 
@@ -159,7 +166,8 @@ void unpack_smooth_normal(inout SurfaceSample s, uint bits) {
     s.smooth_normal_ws = octahedral_decode((vec2(bits & 2047u, bits >> 11 & 2047u) - 1024.0) / 1023.0);
     uint raised = bits >> 22 & 511u;
     s.bounces = s.smooth_is_stored && raised == 0u;
-    s.raised = s.smooth_is_stored && raised > 0u ? float(raised) / 511.0 : 1.0;
+    s.raised = s.smooth_is_stored && raised > kBumpSmoothed ? float(raised) / 511.0 : 1.0;
+    s.bump_shadow = s.smooth_is_stored && raised <= kBumpSmoothed ? raised : 0u;
     s.fades = s.smooth_is_stored && bits >> 31 != 0u;
 }
 #endif

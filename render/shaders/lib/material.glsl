@@ -2,7 +2,8 @@
 // since a software OpenGL executes both sides of every branch:
 //   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP RELIEF_MAP
 //   CLEARCOAT_MAP CLEARCOAT_ROUGHNESS_MAP CLEARCOAT_NORMAL_MAP SHEEN_MAP SHEEN_ROUGHNESS_MAP SPECULAR_WEIGHT_MAP
-//   SPECULAR_TINT_MAP ANISOTROPY_MAP IRIDESCENCE_MAP IRIDESCENCE_THICKNESS_MAP  each is the texture unit of the map
+//   SPECULAR_TINT_MAP ANISOTROPY_MAP IRIDESCENCE_MAP IRIDESCENCE_THICKNESS_MAP
+//   NORMAL_SPREAD_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP, UV_MAPS  of lib/material_maps.glsl
@@ -14,10 +15,13 @@
 //   LIT_AT_VERTICES  no normals, only colors; hooks do nothing
 //   STRANDS        of hair, which lies along v, or along a direction of the material and of ANISOTROPY_MAP
 //   LAYERED_SURFACE  with layers (lib/surface_layers.glsl); ANISOTROPIC: one of them stretches highlights
+//   LEAN_NORMALS   with ANISOTROPIC: highlights stretch as the bumps that the normal map's texels average
+//   BUMP_GATE BUMP_SMOOTH BUMP_RAMP  bumps are not lit from behind the mesh: Material::bump_shadow
 //   HATCHED        Toon surfaces store the strokes of hatching_pass.h
 //   FINE_NORMALS   normals vary within a pixel; defined here or in the file of a hook
 // Additions of single effects are called by hook_*() (render/material/surface_hooks.h).
-// Techniques: bump.normal-encoding, bump.normal-map, bump.tangent-space, env.control-map,
+// Techniques: bump.mipmap, bump.normal-encoding, bump.normal-map, bump.per-fragment, bump.self-shadow,
+//     bump.self-shadow-smooth, bump.tangent-space, env.control-map,
 //     light.phong-pixel, shade.anisotropy-map, shade.derivatives, skin.detail, tex.colour-map,
 //     tex.control-map
 // Source of skin.detail: Barré-Brisebois and Hill 2012
@@ -177,7 +181,6 @@ vec3 strand_direction(vec3 normal, uint model) {
 }
 #endif
 
-#ifdef LAYERED_SURFACE
 // From tangent space to world space, facing the viewer.
 vec3 from_tangent_space(vec3 v) {
     vec3 n = v.x * tangent_ws.xyz + v.y * tangent_ws.w * cross(normal_ws, tangent_ws.xyz) + v.z * normal_ws;
@@ -187,6 +190,51 @@ vec3 from_tangent_space(vec3 v) {
 #endif
     return n;
 }
+
+#if defined(NORMAL_SPREAD_MAP) && defined(NORMAL_MAP)
+// Variances of the slopes that a texel of the normal map averages, along tangent and bitangent, and their covariance
+// (render/material/normal_mips.h).
+vec3 normal_spread(float strength) {
+    vec3 texel = MAP_TEXEL(NORMAL_SPREAD_MAP, kNormalSpreadSlot).xyz;
+    vec2 deviation = strength * texel.xy;
+    return vec3(deviation * deviation, (2.0 * texel.z - 1.0) * deviation.x * deviation.y);
+}
+#else
+vec3 normal_spread(float strength) {
+    return vec3(0.0);
+}
+#endif
+
+// Roughness with slopes of this variance along any direction in place of smooth facets.
+float rougher(float roughness, float variance) {
+    float alpha = roughness * roughness;
+    return sqrt(sqrt(min(alpha * alpha + 2.0 * variance, 1.0)));
+}
+
+#ifdef LAYERED_SURFACE
+// In the plane of a unit normal; `otherwise` where there is none.
+vec3 layer_direction(vec2 direction, vec3 normal, vec3 otherwise) {
+    vec3 along = direction.x * tangent_ws.xyz + direction.y * tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
+    along -= normal * dot(normal, along);
+    float length2 = dot(along, along);
+    return length2 > 1e-8 ? along * inversesqrt(length2) : otherwise;
+}
+
+#ifdef LEAN_NORMALS
+// Stretches highlights along the principal axis of the slopes. Returns the roughness across.
+float stretch_highlights(inout SurfaceLayers layers, float roughness, vec3 spread, vec3 normal) {
+    vec2 axis = vec2(0.5 * (spread.x - spread.y), spread.z);  // its angle is twice that of the principal axis
+    float mean = 0.5 * (spread.x + spread.y);
+    float radius = min(length(axis), mean);
+    float wide = rougher(roughness, mean + radius);
+    float narrow = rougher(roughness, mean - radius);
+    vec2 alphas = vec2(wide * wide, narrow * narrow);
+    layers.anisotropy = sqrt(clamp((alphas.x - alphas.y) / max(1.0 - alphas.y, 1e-4), 0.0, 1.0));
+    float angle = radius > 0.0 ? 0.5 * atan(axis.y, axis.x) : 0.0;
+    layers.along_ws = layer_direction(vec2(cos(angle), sin(angle)), normal, layers.along_ws);
+    return narrow;
+}
+#endif
 
 // `normal`: unit, of the surface.
 SurfaceLayers surface_layers(vec3 normal) {
@@ -233,10 +281,7 @@ SurfaceLayers surface_layers(vec3 normal) {
     float rotation = block_texel(material_and_flags.x, kLayersBlock, 3).w;
     vec2 turn = vec2(cos(rotation), sin(rotation));
     direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
-    vec3 along = direction.x * tangent_ws.xyz + direction.y * tangent_ws.w * cross(normal_ws, tangent_ws.xyz);
-    along -= normal * dot(normal, along);
-    float length2 = dot(along, along);
-    layers.along_ws = length2 > 1e-8 ? along * inversesqrt(length2) : layers.along_ws;
+    layers.along_ws = layer_direction(direction, normal, layers.along_ws);
 #endif
     return layers;
 }
@@ -255,6 +300,24 @@ float widen_roughness(float roughness, vec3 normal) {
 #endif
     return roughness;
 }
+
+#if defined(BUMP_GATE) || defined(BUMP_SMOOTH) || defined(BUMP_RAMP)
+// The normal of the mesh is stored in place of the emission: where a surface emits, its bumps are lit from behind, too.
+void shadow_bumps(inout SurfaceSample s) {
+    bool stores = !s.smooth_is_stored && s.emission == vec3(0.0) && s.model != kModelUnlit && !has_strands(s.model);
+    if (stores) {
+        s.smooth_is_stored = true;
+        s.smooth_normal_ws = from_tangent_space(vec3(0.0, 0.0, 1.0));
+#ifdef BUMP_RAMP
+        s.fades = true;
+#elif defined(BUMP_GATE)
+        s.bump_shadow = kBumpGated;
+#else
+        s.bump_shadow = kBumpSmoothed;
+#endif
+    }
+}
+#endif
 
 SurfaceSample surface_sample(vec3 albedo) {
     vec4 factors = material_texel(2);
@@ -281,6 +344,10 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
     // Highlights of strands follow their direction, not the normal.
     s.roughness = has_strands(s.model) ? s.roughness : widen_roughness(s.roughness, s.normal_ws);
+    vec3 spread = normal_spread(material_texel(1).w);
+#if defined(NORMAL_SPREAD_MAP) && !defined(LEAN_NORMALS)
+    s.roughness = has_strands(s.model) ? s.roughness : rougher(s.roughness, 0.5 * (spread.x + spread.y));
+#endif
     set_plain(s);
 #ifdef STRANDS
     s.strand_ws = strand_direction(s.normal_ws, s.model);
@@ -290,8 +357,14 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
 #ifdef LAYERED_SURFACE
     s.layers = surface_layers(s.normal_ws);
+#ifdef LEAN_NORMALS
+    s.roughness = stretch_highlights(s.layers, s.roughness, spread, s.normal_ws);
+#endif
 #endif
     hook_sample(s, smooth_normal);
+#if defined(BUMP_GATE) || defined(BUMP_SMOOTH) || defined(BUMP_RAMP)
+    shadow_bumps(s);
+#endif
     split_unlit(s);
     return s;
 }

@@ -9,7 +9,7 @@
 // use the model; that only saves a software OpenGL needless work. SHADING_LOBE, a lobe_number(), is defined if all
 // surfaces have this lobe. SMOOTH_NORMALS is defined if some skin is lit by its
 // normal without wrinkles, too; BLENDED_SKIN, if light of both is blended; FOLD_LIGHT, if it bounces within folds.
-// Techniques: light.interface, light.phong-pixel, wrinkle.compression.lighting, wrinkle.fold-light
+// Techniques: bump.self-shadow, bump.self-shadow-smooth, light.interface, light.phong-pixel, wrinkle.compression.lighting, wrinkle.fold-light
 
 #include "lib/brdf.glsl"
 #include "lib/fold_light.glsl"
@@ -58,7 +58,7 @@ struct Reflector {
     float coat;        // reflectance of the clear coat, 0 without one
 #endif
 #ifdef SMOOTH_NORMALS
-    vec4 fading;       // normal without wrinkles; w: 1 = light that grazes it fades
+    vec4 fading;       // normal without wrinkles or bumps; w: how light that grazes it fades, see smooth_fade()
 #endif
 #ifdef KEY_SHADOWS
     vec2 key_visibility;
@@ -103,7 +103,7 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     r.hair.density = 0.0;
 #endif
 #ifdef SMOOTH_NORMALS
-    r.fading = vec4(s.smooth_normal_ws, s.fades ? 1.0 : 0.0);
+    r.fading = vec4(s.smooth_normal_ws, s.bump_shadow > 0u ? 1.0 + float(s.bump_shadow) : s.fades ? 1.0 : 0.0);
 #endif
 #ifdef FOLD_LIGHT
     r.open = s.bounces ? clamp(dot(s.normal_ws, s.smooth_normal_ws), kMinOpen, 1.0) : 1.0;
@@ -174,6 +174,14 @@ LightSum no_light() {
 float grazing_fade(float cosine) {
     return clamp(8.0 * cosine, 0.0, 1.0);
 }
+
+// Fade of light by the cosine at the normal without wrinkles or bumps; how: 0 none, 1 grazing_fade(), 1 + kBumpGated,
+// 1 + kBumpSmoothed.
+float smooth_fade(float how, float cosine) {
+    float fade = mix(1.0, grazing_fade(cosine), min(how, 1.0));
+    fade = how > 1.5 ? (cosine > 0.0 ? 1.0 : 0.0) : fade;
+    return how > 2.5 ? max(cosine, 0.0) : fade;
+}
 #endif
 
 #ifdef SHADE_TOON
@@ -189,7 +197,7 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float l_v = dot(light.to_light, r.to_camera);
     vec2 h = half_cosines(n_l, r.n_v, l_v);
 #ifdef SMOOTH_NORMALS
-    light.irradiance *= mix(1.0, grazing_fade(dot(r.fading.xyz, light.to_light)), r.fading.w);
+    light.irradiance *= smooth_fade(r.fading.w, dot(r.fading.xyz, light.to_light));
 #endif
 #ifdef SHADE_TOON
     // Shadows move light down the ramp instead of darkening its color.
