@@ -46,8 +46,13 @@ enum class ShadingRate : std::uint8_t {
     HwBlinn,         ///< as BlinnMap, with the HardwareDefects of appendix B
     PhongMap,        ///< diffuse light, by linear coordinates of each light; no highlights
     Environment,     ///< highlights of all lights in one sphere map, as if infinitely far away
+
+    // Vectors to lights at vertices, in tangent space, and normal maps per pixel. Of Blinn and
+    // Phong surfaces only:
+    BumpVertex,  ///< all of them (bump.vertex-light-space)
+    BumpAuto,    ///< those of fine meshes; others as with Pixel (bump.strategy)
 };
-inline constexpr int kShadingRates = 14;
+inline constexpr int kShadingRates = 16;
 
 /// The global vector G that fixes the plane basis of Blinn and Phong maps (fakephong.blinn-axis).
 enum class BlinnAxis : std::uint8_t {
@@ -86,7 +91,8 @@ LIMN_FIELDS(HardwareDefects) {
 inline constexpr const char* kShadingRateNames =
     "pixel vertex subdivided quadratic cubic hw_quadratic normals_quadratic normals_spherical "
     "taylor "
-    "blinn_map quadratic_blinn hw_blinn phong_map environment";
+    "blinn_map quadratic_blinn hw_blinn phong_map environment bump_vertex "
+    "bump_auto";
 
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
@@ -135,7 +141,9 @@ LIMN_FIELDS(Rendering) {
             "(vertex), 6 (subdivided, quadratic, hw_quadratic) or 10 (cubic) lit points of each "
             "triangle; normals other than linear (normals_*, taylor); textures, which blinn and "
             "phong materials read highlights from (blinn_map, quadratic_blinn, hw_blinn, "
-            "environment) or diffuse light (phong_map)",
+            "environment) or diffuse light (phong_map); vectors to lights in the tangent space of "
+            "vertices, for normal maps of blinn and phong materials (bump_vertex), or only "
+            "where edges are short for the distance of lamps (bump_auto)",
         .values = kShadingRateNames);
     LIMN_FIELD(
         blinn_axis, .doc = "vector that fixes the texture coordinates of blinn_map and the like",

@@ -80,6 +80,19 @@ bool is_drawable(const MeshData& mesh) {
     return true;
 }
 
+/// Of the triangles of the first `count` indices, which are in range.
+float mean_edge(const MeshData& mesh, std::uint32_t count) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; i += 3) {
+        for (std::uint32_t corner = 0; corner < 3; ++corner) {
+            sum += static_cast<double>(glm::distance(
+                mesh.positions[mesh.indices[i + corner]],
+                mesh.positions[mesh.indices[i + (corner + 1) % 3]]));
+        }
+    }
+    return static_cast<float>(sum / std::max(count, 1u));
+}
+
 }  // namespace
 
 MeshPool::MeshPool() : streams_("meshes") {
@@ -135,6 +148,7 @@ void MeshPool::upload(
     range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
     range.colored = !mesh.colors.empty();
     range.tangents = !mesh.tangents.empty();
+    range.mean_edge = mean_edge(mesh, range.index_count);
     const std::uint32_t first = vertex_slots_.allocate_or_grow(range.vertex_count);
     range.base_vertex = static_cast<std::int32_t>(first);
     streams_.reserve(vertex_slots_.capacity());

@@ -32,6 +32,7 @@ struct MeshRange {
     std::uint32_t version = 0;        ///< of the MeshData
     std::vector<CoarseRange> coarse;  ///< from fine to coarse; their indices follow the mesh's own
     Bounds bounds;
+    float mean_edge = 0;    ///< mean length of the edges of triangles [m]
     bool colored = false;   ///< has vertex colors
     bool tangents = false;  ///< has vertex tangents, as normal maps need
 };

@@ -3,6 +3,7 @@
 #include "render/geometry/surface_draws.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/light/bump_strategy.h"
 #include "render/light/highlight_layers.h"
 #include "render/light/light_list.h"
 #include "render/light/lighting.h"
@@ -73,7 +74,8 @@ meshes(gpu::Device& device, const char* vertex, const char* geometry, const char
 }
 
 void draw_object_major(
-    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int draw) {
+    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate,
+    std::span<const DrawRun> runs, int draw) {
     const auto& records = view.data.get<LightRecords>();
     bind_lighting(context, view);
     bind_shadow_masks(context, view);
@@ -92,9 +94,20 @@ void draw_object_major(
         map.layer_of_material->bind(context.device(), layout::kHighlightLayersUnit);
     }
     draw_runs(
-        context, view, view.data.get<InstanceList>().opaque,
-        pass.rates[static_cast<std::size_t>(row.rate)],
+        context, view, runs, pass.rates[static_cast<std::size_t>(row.rate)],
         {.variant = &variant, .state = nearest_once(draw)});
+}
+
+void draw_object_major(
+    PassContext& context, ForwardPass& pass, const ViewData& view, ShadingRate rate, int draw) {
+    const auto& list = view.data.get<InstanceList>();
+    if (rate != ShadingRate::BumpAuto) {
+        draw_object_major(context, pass, view, rate, list.opaque, draw);
+        return;
+    }
+    const BumpRuns runs = split_bump_runs(list, *view.frame->meshes, view.data.get<LightList>());
+    draw_object_major(context, pass, view, ShadingRate::BumpVertex, runs.vertex, draw);
+    draw_object_major(context, pass, view, ShadingRate::BumpAuto, runs.pixel, draw);
 }
 
 void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {

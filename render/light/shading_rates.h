@@ -30,6 +30,7 @@ struct ShadingRateRow {
 };
 
 inline constexpr int kMaxSingleLights = 8;   ///< limited by the varyings between shader stages
+inline constexpr int kMaxBumpLights = 4;     ///< the same with three vectors of each
 inline constexpr int kMaxDiffuseLights = 4;  ///< the same with Rendering::blinn_diffuse
 
 /// In the order of ShadingRate.
@@ -55,6 +56,9 @@ inline constexpr ShadingRateRow kShadingRateRows[] = {
      kMaxSingleLights},
     {ShadingRate::Environment, "environment_map.vert", "", "environment_map.frag",
      HighlightMap::Environment, 1},
+    {ShadingRate::BumpVertex, "bump_vertex.vert", "", "bump_vertex.frag", HighlightMap::None,
+     kMaxBumpLights},
+    {ShadingRate::BumpAuto, "mesh.vert", "", "forward_list.frag"},  // and the one before
 };
 static_assert(std::size(kShadingRateRows) == kShadingRates);
 

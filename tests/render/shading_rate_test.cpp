@@ -232,4 +232,52 @@ TEST_CASE_FIXTURE(
     CHECK(last < 1e-3f);
 }
 
+TEST_CASE_FIXTURE(
+    ShadingRates,
+    "bump vertex: on a plane, vectors to a lamp are exact: two triangles are lit as pixels are"
+        * technique("bump.vertex-light-space")) {
+    Material matte = world.resource<Assets>().materials[shiny.index];
+    matte.specular = {0, 0, 0};
+    ImageData map = {.name = "bumps", .width = 2, .height = 2, .pixels = {}};
+    map.pixels = {200, 128, 230, 255, 128, 60, 235, 255, 90, 170, 235, 255, 128, 128, 255, 255};
+    Material bumpy = matte;
+    bumpy.normal_texture = {.image = add(std::move(map)), .nearest = true, .scale = {3, 3}};
+    const RenderView whole = look({0, 0, 1}, {0, 0, 0}, kSide, kSide);
+    const Entity square = place(add(make_grid(1)), add(matte), at({0, 0, 0}));
+    // A fifth of a floor's side from its corner, and a tenth above it.
+    lamp({-0.6f, -0.6f, 0.2f});
+    const gpu::FloatImage found = picture(ShadingRate::BumpVertex, whole);
+    CHECK(largest_difference(found, picture(ShadingRate::Pixel, whole)) < 2e-3f);
+    CHECK(rgb_at(found, 12, 51).x == test::near(kDiffuse.x).epsilon(0.01));
+    CHECK(rgb_at(picture(ShadingRate::Vertex, whole), 12, 51).x < 0.5f * kDiffuse.x);
+
+    world.get<MeshInstance>(square).material = add(bumpy);
+    const gpu::FloatImage bumps = picture(ShadingRate::BumpVertex, whole);
+    CHECK(largest_difference(bumps, found) > 0.1f);
+    CHECK(largest_difference(bumps, picture(ShadingRate::Pixel, whole)) < 2e-3f);
+    // The light of one that falls with the distance is exact, too; that of a sun is the same.
+    shine(PointLight{.intensity = 0.3f, .radius = 0}, at({0.4f, 0.2f, 0.3f}));
+    shine(DirectionalLight{.illuminance = 1}, look_at({0, 0, 0}, {0.5f, 0.2f, -1}));
+    CHECK(
+        largest_difference(
+            picture(ShadingRate::BumpVertex, whole), picture(ShadingRate::Pixel, whole))
+        < 4e-3f);
+}
+
+TEST_CASE_FIXTURE(
+    ShadingRates, "bump vertex: on a ball of ten thousand triangles it is as good as per pixel"
+                      * technique("bump.vertex-light-space, bump.strategy")) {
+    ImageData map = {.name = "bumps", .width = 2, .height = 2, .pixels = {}};
+    map.pixels = {160, 128, 251, 255, 128, 100, 252, 255, 110, 140, 253, 255, 128, 128, 255, 255};
+    Material bumpy = world.resource<Assets>().materials[shiny.index];
+    bumpy.shininess = 20;
+    bumpy.normal_texture = {.image = add(std::move(map)), .nearest = true, .scale = {8, 4}};
+    place(add(make_ball(50)), add(bumpy), at({0, 0, 0}));
+    lamp({0.9f, 1.2f, 1.4f});
+    const RenderView view = look({0, 0, 2}, {0, 0, 0}, kSide, kSide);
+    const gpu::FloatImage found = picture(ShadingRate::BumpVertex, view);
+    CHECK(largest_difference(found, picture(ShadingRate::Pixel, view)) < 2.0f / 255);
+    CHECK(largest_difference(found, picture(ShadingRate::Vertex, view)) > 0.05f);
+}
+
 }  // namespace limn::test::shading_rate_test
