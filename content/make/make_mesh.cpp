@@ -63,7 +63,7 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<FinsShape, make_fins>(
-            "fins", "cards of hair that stand on the edges of another mesh and move with it"),
+            "fins", "cards on the edges of another mesh, for its fur where it is seen edge-on"),
         mesh_kind<FragmentsShape, make_fragments>(
             "fragments", "another mesh of the level, broken into pieces that can fly apart"),
         rigged_kind<HeadShape, make_head, make_head_rig>(

@@ -26,6 +26,7 @@ struct Fur {
     Vec3 tip = {1, 1, 1};
     float variation = 0.3f;
     MaterialId material = {};
+    bool fins = false;
 };
 
 LIMN_FIELDS(Fur) {
@@ -52,6 +53,9 @@ LIMN_FIELDS(Fur) {
         .color = true);
     LIMN_FIELD(variation, "of brightness between strands", "", 0, 1);
     LIMN_FIELD(material, "of the coat; none: that of the mesh");
+    LIMN_FIELD(
+        fins,
+        "the mesh is one of `fins`, seen where the surface is seen edge-on, instead of shells");
 }
 
 }  // namespace limn

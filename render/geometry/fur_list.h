@@ -35,7 +35,7 @@ class Device;
 /// A shell as an item.
 struct FurShell {
     std::uint8_t fur = 0;    ///< number in the FurList
-    std::uint8_t index = 0;  ///< i
+    std::uint8_t index = 0;  ///< i; 0: fins
     float spacing = 0;       ///< of shells, length / k [m]
     float lean = 0;          ///< upper bound, in offsets
 };

@@ -31,7 +31,8 @@ constexpr std::uint16_t kHidden = 0xffff;
 /// across the surface, this along the light, which may be at a grazing angle.
 constexpr float kErrorScale = 1.5f;
 
-constexpr int kMaxShellStep = 8;  ///< of shells of distant fur
+constexpr int kMaxShellStep = 8;        ///< of shells of distant fur
+constexpr float kShadowShells = 0.25f;  ///< as many per texel of shadow maps as per pixel
 
 // Of a draw that only compiles (RenderItems::sampled).
 constexpr std::uint32_t kSampledIndices = 3 * 64;
@@ -155,7 +156,7 @@ void InstanceCollector::collect_casters(
         .eye = volume.eye,
         .range = volume.range,
         .depth_row = volume.depth_row,
-        .pixels_per_unit = volume.texels_per_unit,
+        .pixels_per_unit = kShadowShells * volume.texels_per_unit,
         .casters = &volume};
     collect_from(items, casters, ring, list);
 }
@@ -410,9 +411,9 @@ void InstanceCollector::add_command(
         list.without_tangents.push_back(mesh_index(items, state));
     }
     add_hooks(run.features, state.deformed ? items.shapes()[state.index].hooks : HookBits{});
-    if (state.shell) {
+    if (state.shell || state.fin) {
         run.features.bits |= kAlphaMask;
-        run.features.hooks.set(kFurHook, kFurShell);
+        run.features.hooks.set(kFurHook, state.fin ? kFurShell | kFurFin : kFurShell);
     }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;

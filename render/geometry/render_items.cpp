@@ -225,10 +225,12 @@ void RenderItems::add_shells() {
         }
         RenderItemBlock& block = add_block();
         block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
-        block.casts_shadows = !world_->has<NoShadow>(entity);
+        block.casts_shadows = !fur.fins && !world_->has<NoShadow>(entity);
         RenderItemBlock::Copies& copies = block.copies_;
         const bool own = fur.material.index != kNoAsset;
-        for (std::int32_t i = fur.shells - 1; i > 0; --i) {
+        const std::int32_t outermost = fur.fins ? fur.shells : fur.shells - 1;
+        const std::int32_t innermost = fur.fins ? fur.shells : 1;
+        for (std::int32_t i = outermost; i >= innermost; --i) {
             copies.entities.push_back(entity);
             copies.surfaces.push_back({surface.mesh, own ? fur.material : surface.material});
             copies.now.push_back(now);
@@ -237,7 +239,7 @@ void RenderItems::add_shells() {
             copies.inflate.push_back({shell_offset(fur, i)});
             copies.shells.push_back(
                 {.fur = *number,
-                 .index = static_cast<std::uint8_t>(i),
+                 .index = static_cast<std::uint8_t>(fur.fins ? 0 : i),
                  .spacing = fur.length / static_cast<float>(fur.shells),
                  .lean = fur_lean(fur)});
         }
@@ -290,7 +292,8 @@ void RenderItems::refresh(RenderItemBlock& block) const {
             {.blended = materials_->batch(batch).blend,
              .inflated = !block.inflate.empty(),
              .deformed = deformed,
-             .shell = !block.shells.empty(),
+             .shell = !block.shells.empty() && block.shells[i].index > 0,
+             .fin = !block.shells.empty() && block.shells[i].index == 0,
              .mirrored = (det < 0) != block.inside_out_,
              .batch = batch,
              .index = deformed ? shape : mesh});

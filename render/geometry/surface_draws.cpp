@@ -4,6 +4,7 @@
 #include "render/geometry/render_items.h"
 #include "render/gpu/device.h"
 #include "render/light/lighting.h"
+#include "render/material/fur_hook.h"
 #include "render/material/material_pool.h"
 #include "render/shaders/instance_gpu.h"
 #include "render/shaders/material_gpu.h"
@@ -134,7 +135,7 @@ void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceL
 }
 
 gpu::PipelineState visible_sides(gpu::PipelineState state, const DrawRun& run) {
-    const bool both_sides = run.features.has(kDoubleSided);
+    const bool both_sides = run.features.has(kDoubleSided) || is_fin(run.features);
     state.cull = static_cast<GLenum>(both_sides ? GL_NONE : run.mirrored ? GL_FRONT : GL_BACK);
     return state;
 }

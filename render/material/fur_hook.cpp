@@ -10,7 +10,7 @@ namespace {
 constexpr HookPoint kFurPoints[] = {
     HookPoint::Position, HookPoint::Vertex, HookPoint::Color, HookPoint::Sample};
 
-constexpr HookDefinition kFurDefinitions[] = {{kFurShell, "FUR_SHELL"}};
+constexpr HookDefinition kFurDefinitions[] = {{kFurShell, "FUR_SHELL"}, {kFurFin, "FUR_FIN"}};
 
 }  // namespace
 
@@ -18,7 +18,7 @@ const SurfaceHook kFurHook = {
     .name = "fur",
     .points = kFurPoints,
     .definitions = kFurDefinitions,
-    .moving = kFurShell,
+    .moving = kFurShell | kFurFin,
     .position_file = "lib/fur_position.glsl",
     .vertex_file = "lib/fur_vertex.glsl",
     .surface_file = "lib/fur_surface.glsl",
@@ -27,6 +27,10 @@ const SurfaceHook kFurHook = {
 
 bool is_fur(const SurfaceFeatures& features) {
     return features.hooks.of(kFurHook) != 0;
+}
+
+bool is_fin(const SurfaceFeatures& features) {
+    return (features.hooks.of(kFurHook) & kFurFin) != 0;
 }
 
 }  // namespace limn

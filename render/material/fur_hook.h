@@ -12,11 +12,13 @@ namespace limn {
 /// Bits of kFurHook.
 enum FurFeature : std::uint16_t {
     kFurShell = 1u << 0,
+    kFurFin = 1u << 1,  // with kFurShell: instead
 };
 
 extern const SurfaceHook kFurHook;
 
-/// Whether these are the features of a shell.
+/// Whether these are the features of a shell or of fins.
 [[nodiscard]] bool is_fur(const SurfaceFeatures& features);
+[[nodiscard]] bool is_fin(const SurfaceFeatures& features);
 
 }  // namespace limn

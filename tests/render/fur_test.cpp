@@ -421,6 +421,35 @@ TEST_CASE_FIXTURE(FurScene, "fur: the same image twice; a missing mesh draws not
     CHECK(moments(radiance(flat_view())).total == 0);
 }
 
+TEST_CASE_FIXTURE(
+    RenderTest, "fur: a fin shows every strand edge-on, fewer as it is seen from above, then none"
+                    * technique("shade.fur")) {
+    std::vector<Vec4> inputs;
+    for (int i = 0; i < 4000; ++i) {
+        inputs.emplace_back(0.025f * (static_cast<float>(i) + 0.5f), 0, 0, 0);
+    }
+    const auto part = [&](float height, float facing) {
+        double sum = 0;
+        for (const Vec4& found : evaluate_shader(
+                 "#include \"lib/fur.glsl\"\n",
+                 fmt::format(
+                     "y.x = fin_point(x.x, {:.6f}, vec4(0.24, 1.0, 0.0, 0.0), {:.6f}).covered ? "
+                     "1.0 "
+                     ": 0.0;",
+                     height, facing),
+                 inputs)) {
+            sum += static_cast<double>(found.x);
+        }
+        return sum / static_cast<double>(inputs.size());
+    };
+    CHECK(part(0, 0.002f) == near(0.48).epsilon(0.03));  // their diameter
+    CHECK(part(0.75f, 0.002f) == near(0.24).epsilon(0.05));
+    CHECK(part(0, 0.3f) == near(0.24).epsilon(0.25));
+    CHECK(part(0, -0.3f) == near(part(0, 0.3f)).epsilon(1e-6));
+    CHECK(part(0, 0.61f) == 0);
+    CHECK(part(1, 0.002f) == 0);
+}
+
 TEST_CASE("fur: texture coordinates are scaled to meters by their mean stretch") {
     MeshData square = make_square();  // side 2, uv 0 .. 1
     FurChart chart = find_fur_chart(square);

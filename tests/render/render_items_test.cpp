@@ -112,20 +112,23 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: every mesh instance once, with its b
 }
 
 TEST_CASE_FIXTURE(ItemsTest, "render items: a draw key preserves the draw state") {
-    for (int bits = 0; bits < 32; ++bits) {
-        const DrawState state = {(bits & 1) != 0,
-                                 (bits & 2) != 0,
-                                 (bits & 4) != 0,
-                                 (bits & 8) != 0,
-                                 (bits & 16) != 0,
-                                 0x06bcdef1,
-                                 5,
-                                 0x1edcba98};
+    for (int bits = 0; bits < 64; ++bits) {
+        const DrawState state = {
+            .blended = (bits & 1) != 0,
+            .inflated = (bits & 2) != 0,
+            .deformed = (bits & 4) != 0,
+            .shell = (bits & 8) != 0,
+            .fin = (bits & 16) != 0,
+            .mirrored = (bits & 32) != 0,
+            .batch = 0x02bcdef1,
+            .level = 5,
+            .index = 0x1edcba98};
         const DrawState back = draw_state(make_draw_key(state));
         CHECK(back.blended == state.blended);
         CHECK(back.inflated == state.inflated);
         CHECK(back.deformed == state.deformed);
         CHECK(back.shell == state.shell);
+        CHECK(back.fin == state.fin);
         CHECK(back.mirrored == state.mirrored);
         CHECK(back.batch == state.batch);
         CHECK(back.level == state.level);

@@ -214,33 +214,24 @@ class RootedMesh {
     std::vector<std::vector<Vec3>> offsets_;  ///< by morph target and vertex
 };
 
-Vec4 fur_color(const MeshData& skin, std::uint32_t vertex) {
-    return vertex < skin.colors.size() ? skin.colors[vertex] : Vec4(1);
-}
-
 void append_fin(
-    MeshData& mesh, RootedMesh& rooted, const FinsShape& shape, const MeshData& skin,
-    const Edge& edge, float first_u) {
+    MeshData& mesh, RootedMesh& rooted, int rows, const MeshData& skin, const Edge& edge,
+    float first_u) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    const Vec3 along_edge = skin.positions[edge.second] - skin.positions[edge.first];
-    const float width = glm::length(along_edge) / shape.spacing;
-    for (int row = 0; row < shape.rows; ++row) {
-        const float t = static_cast<float>(row) / static_cast<float>(shape.rows - 1);
+    const float width = glm::distance(skin.positions[edge.first], skin.positions[edge.second]);
+    for (int row = 0; row < rows; ++row) {
+        const float t = static_cast<float>(row) / static_cast<float>(rows - 1);
         for (const std::uint32_t v : {edge.first, edge.second}) {
-            const Vec4 color = fur_color(skin, v);
-            const StrandCurve curve = {
-                skin.positions[v], skin.normals[v],
-                lean_along(shape.comb, shape.droop, skin.normals[v]), shape.length * color.w};
-            const Vec3 along = curve.along(t);
-            const Vec3 across =
-                normalize_or(along_edge - along * glm::dot(along_edge, along), any_across(along));
-            append_hair_vertex(mesh, curve.at(t), along, across, curve.normal);
-            mesh.uvs.emplace_back(first_u + (v == edge.first ? 0.0f : width), t);
-            mesh.colors.emplace_back(Vec3(color) * glm::mix(Vec3(shape.root), shape.tip, t), 1.0f);
+            mesh.positions.push_back(skin.positions[v]);
+            mesh.normals.push_back(skin.normals[v]);
+            mesh.tangents.push_back(v < skin.tangents.size() ? skin.tangents[v] : Vec4(1, 0, 0, 1));
+            mesh.uvs.push_back(v < skin.uvs.size() ? skin.uvs[v] : Vec2(0));
+            mesh.uvs1.emplace_back(first_u + (v == edge.first ? 0.0f : width), t);
+            mesh.colors.push_back(v < skin.colors.size() ? skin.colors[v] : Vec4(1));
             rooted.append({{v, v, v}, {1, 0, 0}}, 1);
         }
     }
-    append_rows(mesh, first, shape.rows);
+    append_rows(mesh, first, rows);
 }
 
 }  // namespace
@@ -292,12 +283,10 @@ MeshData make_fins(const FinsShape& shape, const Assets& assets) {
         return mesh;
     }
     RootedMesh rooted(mesh, skin);
-    Random random(0, 0, name_hash("fur_fins"), 0);
+    float u = 0;
     for (const Edge& edge : distinct_edges(skin)) {
-        const float first_u = random.uniform();
-        if (fur_color(skin, edge.first).w > 0 || fur_color(skin, edge.second).w > 0) {
-            append_fin(mesh, rooted, shape, skin, edge, first_u);
-        }
+        append_fin(mesh, rooted, shape.rows, skin, edge, u);
+        u = std::fmod(u + 0.377f, 10.0f);
     }
     update_bounds(mesh);
     return mesh;

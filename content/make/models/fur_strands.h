@@ -50,33 +50,20 @@ LIMN_FIELDS(StrandsShape) {
     LIMN_FIELD(seed, "random seed");
 }
 
-/// Cards that stand on the edges of another mesh (Lengyel's fins), for a material with a pattern
-/// `hair` and `"alpha_mode": "mask"`: where shells are seen edge-on, between them.
+/// Fins of fur (Lengyel et al. 2001): cards on the edges of another mesh, for an entity with Fur
+/// and its `fins`. They fill the gaps between shells where these are seen edge-on.
 struct FinsShape {
     MeshId mesh;
-    float length = 0.03f;
-    float spacing = 0.08f;
-    int rows = 4;
-    Vec3 comb = {0, 0, 0};
-    float droop = 0.4f;
-    float root = 0.4f;
-    Vec3 tip = {1, 1, 1};
+    int rows = 5;
 };
 
 LIMN_FIELDS(FinsShape) {
     LIMN_FIELD(mesh, "the mesh that they stand on, by name; must come earlier in the file");
-    LIMN_FIELD(length, "along normals; the alpha of the mesh's colors scales it", "m", 1e-5, 100);
-    LIMN_FIELD(spacing, "width of the image along an edge", "m", 1e-5, 100);
     LIMN_FIELD(rows, "of vertices along a fin: more bend more smoothly", "", 2, 32);
-    LIMN_FIELD(comb, "as of strands");
-    LIMN_FIELD(droop, "as of strands", "", 0, 10);
-    LIMN_FIELD(root, "brightness at the skin", "", 0, 1);
-    LIMN_FIELD(
-        tip, .doc = "color of tips, multiplied by that of roots", .min = 0, .max = 4,
-        .color = true);
 }
 
-/// u runs along edges, v from roots to tips. One fin per edge, whatever seams it has. Empty without
+/// One fin per edge, whatever seams it has. It has no height yet: that is the second v, 0 .. 1,
+/// for shaders; the second u is along edges [m]. Other attributes are those of roots. Empty without
 /// a mesh or normals.
 [[nodiscard]] MeshData make_fins(const FinsShape& shape, const Assets& assets);
 

@@ -6,10 +6,11 @@
 //
 // of the plane. Lengths and directions vary from strand to strand and smoothly from tuft to tuft. Cells smaller than a
 // pixel are joined, four to one, until they are larger: strands get thicker and fewer and cover the same.
+// Shells and fins: Lengyel et al., "Real-Time Fur over Arbitrary Surfaces", 2001.
 // Techniques: shade.fur
-// Source of shade.fur: Lengyel et al., "Real-Time Fur over Arbitrary Surfaces", 2001
 
 const float kStrandsAcrossTuft = 7.0;  // by eye
+const float kFinFade = 0.6;            // by eye
 const uint kFurSeed = 0x667572u;
 
 struct FurPoint {
@@ -52,6 +53,26 @@ FurPoint fur_point(vec2 at, float height, vec4 shape) {
         float left = 1.0 - height / mix(shape.y, 1.0, rank);
         float distance2 = dot(from_center, from_center) / max(shape.x * shape.x * left, 1e-12);
         if (left > 0.0 && distance2 < nearest) {
+            nearest = distance2;
+            point = FurPoint(true, random);
+        }
+    }
+    return point;
+}
+
+// The same of a fin, a plane along strands: `at` along its edge. `facing`: cosine of the surface's normal to the viewer;
+// strands vanish one by one as it rises, since shells show them.
+FurPoint fin_point(float at, float height, vec4 shape, float facing) {
+    FurPoint point = FurPoint(false, vec4(0.5));
+    float nearest = 1.0;
+    int first = int(floor(at - 0.5));
+    for (int i = 0; i < 2; ++i) {
+        vec4 random = fur_random(ivec2(first + i, 0), kFurSeed);
+        float from_center = at - (float(first + i) + 0.25 + 0.5 * random.x);
+        float left = 1.0 - height / mix(shape.y, 1.0, random.z);
+        float distance2 = from_center * from_center / max(shape.x * shape.x * left, 1e-12);
+        bool shown = abs(facing) < kFinFade * random.y;
+        if (left > 0.0 && shown && distance2 < nearest) {
             nearest = distance2;
             point = FurPoint(true, random);
         }

@@ -1,6 +1,7 @@
 // Shells of a coat of fur: a hook of lib/mesh_vertex.glsl. Shell i of k is the mesh, inflated by length i / k. It moves
-// along the surface, too, with the square of its height: strands rise from the skin and bend over. Definition:
+// along the surface, too, with the square of its height: strands rise from the skin and bend over. Definitions:
 //   FUR_SHELL  it is one
+//   FUR_FIN    or fins, which rise from edges by the second texture coordinates
 // Techniques: shade.fur
 
 #ifdef FUR_SHELL
@@ -8,7 +9,11 @@
 
 // Of the strand through this vertex, 0 at its root .. 1.
 float fur_height() {
+#ifdef FUR_FIN
+    return second_uv.y;
+#else
     return uintBitsToFloat(instance.w) / max(fur_texel(instance.y, 1).x, 1e-20);
+#endif
 }
 
 // How far tips lie from their roots along the surface, in lengths.
@@ -23,9 +28,9 @@ vec3 fur_lean() {
 
 void fur_position(inout vec3 position) {
 #ifdef FUR_SHELL
-    float inflation = uintBitsToFloat(instance.w);
     float height = fur_height();
-    position = inflate(position, normal_ms, (color.a - 1.0) * inflation);
-    position += color.a * inflation * height * fur_lean();
+    float offset = color.a * height * fur_texel(instance.y, 1).x;
+    position = inflate(position, normal_ms, offset - uintBitsToFloat(instance.w));
+    position += offset * height * fur_lean();
 #endif
 }

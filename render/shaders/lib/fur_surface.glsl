@@ -1,13 +1,14 @@
 // A shell of a coat of fur: holes between strands, whose color gets lighter from root to tip, and their direction, by
-// which they are shaded. A surface hook. Definition:
+// which they are shaded. A surface hook. Definitions:
 //   FUR_SHELL  the surface is one
+//   FUR_FIN    or fins
 // Techniques: shade.fur
 
 #ifdef FUR_SHELL
 #include "lib/fur.glsl"
 #include "lib/fur_record.glsl"
 
-layout(location = 15) in vec3 fur_at;
+layout(location = 15) in vec4 fur_at;
 layout(location = 16) in vec3 fur_strand;
 
 FurPoint fur_here = FurPoint(false, vec4(0.5));
@@ -17,8 +18,16 @@ void fur_color(inout vec4 color) {
 #ifdef FUR_SHELL
     uint flags = material_and_flags.y;
     vec4 ends = fur_texel(flags, 3);
-    float scale = fur_scale(max(abs(dFdx(fur_at.xy)), abs(dFdy(fur_at.xy))));
+    vec2 per_pixel = max(abs(dFdx(fur_at.xy)), abs(dFdy(fur_at.xy)));
+#ifdef FUR_FIN
+    per_pixel.y = 0.0;
+#endif
+    float scale = fur_scale(per_pixel);
+#ifdef FUR_FIN
+    fur_here = fin_point(fur_at.x * scale, fur_at.z, fur_texel(flags, 2), fur_at.w);
+#else
     fur_here = fur_point(fur_at.xy * scale, fur_at.z, fur_texel(flags, 2));
+#endif
     float brightness = 1.0 + fur_texel(flags, 4).x * (2.0 * fur_here.random.w - 1.0);
     color.rgb *= mix(vec3(ends.w), ends.rgb, fur_at.z) * brightness;
     color.rgb = min(color.rgb, 1.0);
