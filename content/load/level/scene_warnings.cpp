@@ -64,6 +64,7 @@ constexpr Need kNeeds[] = {
     {"autofocus", {"lens", "", ""}},
     {"camera_path", {"camera", "", ""}},
     {"speed_view", {"camera", "", ""}},
+    {"fur", {"mesh_instance", "", ""}},
     {"inflate", {"mesh_instance", "", ""}},
     {"no_shadow", {"mesh_instance", "", ""}},
     {"mesh_levels", {"mesh_instance", "", ""}},
