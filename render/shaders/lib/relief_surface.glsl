@@ -239,7 +239,11 @@ void relief_normal(inout vec3 normal) {
 #endif
 }
 
-#if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS)
+#if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS) && !defined(RELIEF_BUMP) && !defined(RELIEF_DISPLACED) && !defined(RELIEF_ODD)
+#define RELIEF_LIGHT_RAYS
+#endif
+
+#ifdef RELIEF_LIGHT_RAYS
 // The fraction of the light from a direction that the relief lets through to the point that the search found.
 float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
     float relief = relief_meters(search);
@@ -258,7 +262,7 @@ float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
 #endif
 
 void relief_sample(inout SurfaceSample s, vec3 smooth_normal) {
-#if defined(RELIEF) && defined(RELIEF_RAYS) && defined(KEY_SHADOWS)
+#ifdef RELIEF_LIGHT_RAYS
     vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
     ReliefFrame frame = relief_frame(normalize(normal_ws));
     vec3 position_ws = relief_position.xyz + view.camera_ws.xyz + surface_offset;
