@@ -65,9 +65,9 @@ struct SurfaceHook {
     const char* name;                   ///< prefix of its functions
     std::span<const HookPoint> points;  ///< where it is called
     std::span<const HookDefinition> definitions;
-    std::uint16_t moving = 0;             ///< bits with which it moves vertices
-    std::uint16_t off_mesh = 0;           ///< bits with which fragments lie off the mesh
-    std::uint32_t maps = 0;  ///< with moving or off_mesh: bits of the map slots that it reads
+    std::uint16_t moving = 0;    ///< bits with which it moves vertices
+    std::uint16_t off_mesh = 0;  ///< bits with which fragments lie off the mesh
+    std::uint32_t maps = 0;      ///< with moving or off_mesh: bits of the map slots that it reads
     const char* position_file = nullptr;  ///< with HookPoint::Position
     const char* vertex_file = nullptr;    ///< with HookPoint::Vertex
     const char* surface_file = nullptr;   ///< with any other point

@@ -121,6 +121,33 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    SkinPicture, "skin_draw: a deformed mesh is displaced along its deformed normals"
+                     * technique("tex.displacement")) {
+    ImageData map = {.name = "map", .width = 4, .height = 4, .pixels = {}};
+    for (int i = 0; i < 16; ++i) {
+        map.pixels.insert(
+            map.pixels.end(), {128, 128, 255, static_cast<std::uint8_t>(16 * (5 * i % 16))});
+    }
+    Material bumpy = {.base_color = {0.8f, 0.8f, 0.8f, 1}};
+    bumpy.detail = SurfaceDetail::Displaced;
+    bumpy.relief_texture = {.image = add(std::move(map))};
+    bumpy.relief_depth = 0.1f;
+    const Entity smooth = snake(0.5f, white);
+    const gpu::FloatImage plain = radiance(view);
+    world.destroy(smooth);
+    const Entity entity = snake(0.5f, add(bumpy));
+    const gpu::FloatImage got = radiance(view);
+    const gpu::FloatImage velocity = aov(view, "velocity");
+    const Entity same = baked(entity);
+    world.destroy(entity);
+    CHECK(different(got, radiance(view)) <= 12);
+    CHECK(different(got, plain) > 200);
+    // Nothing has moved since the previous frame.
+    CHECK(largest_difference(velocity, aov(view, "velocity")) <= 0.02f);
+    world.destroy(same);
+}
+
 TEST_CASE_FIXTURE(SkinPicture, "skin_draw: a deformed mesh inflates along its deformed normals") {
     const Inflate more = {.distance = 0.08f};
     const Entity entity = snake(0.5f, white);

@@ -106,7 +106,7 @@ void find_relief_lod() {
 }
 #endif
 
-#if defined(RELIEF) && !defined(RELIEF_BUMP)
+#ifdef RELIEF
 // Fewer for rays head on, which pass less of the map.
 int relief_steps(float most, float cosine) {
     return int(most * mix(1.0, 0.35, cosine) + 0.5);
