@@ -1,3 +1,4 @@
+#include "content/bake/odd_map.h"
 #include "content/make/patterns/relief_patterns.h"
 #include "tests/near.h"
 
@@ -49,6 +50,29 @@ TEST_CASE("relief patterns: solid ones have cones, pierced ones a back and holes
     }
     CHECK(holes > 400);
     CHECK(holes < 2000);
+}
+
+TEST_CASE("relief patterns: straight down, an ODD map shows the depths of the relief map") {
+    const BlocksPattern plain = {.image = {.size = 64}};
+    BlocksPattern with_odd = plain;
+    with_odd.odd = true;
+    const ImageData relief = make_blocks(plain).relief;
+    const ImageData odd = make_blocks(with_odd).relief;
+    REQUIRE(odd.width == 512);
+    REQUIRE(odd.pixels.size() == 512 * 512 * 4);
+    double sum = 0;
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            // Of the four directions about the normal, 8 degrees off.
+            const float distance = texel_at(odd, 8 * 32 + x, 8 * 32 + y).w * kOddDistance;
+            float depth = 0;
+            for (int i = 0; i < 4; ++i) {
+                depth += 0.25f * texel_at(relief, 2 * x + i % 2, 2 * y + i / 2).w;
+            }
+            sum += double(std::abs(distance - depth));
+        }
+    }
+    CHECK(sum / (32 * 32) <= 0.06);  // a byte is 0.03; at joints 8 degrees are a quarter of a cell
 }
 
 TEST_CASE(
