@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kMinStretch = 1e-6f;  ///< of texture coordinates [m]
 
-layout::FurRecord make_record(const Fur& fur, const FurChart& chart) {
+layout::FurRecord make_fur_record(const Fur& fur, const FurChart& chart) {
     const Vec2 cells = fur.density * chart.scale;
     return {
         .lean = Vec4(fur.comb, fur.droop),
@@ -82,7 +82,7 @@ std::optional<std::uint8_t> FurList::add(const Fur& fur, MeshId mesh, const Asse
     if (mesh.index >= assets.meshes.size()) {
         return std::nullopt;
     }
-    const layout::FurRecord record = make_record(fur, chart_of(mesh, assets));
+    const layout::FurRecord record = make_fur_record(fur, chart_of(mesh, assets));
     const auto same = [&](const layout::FurRecord& other) {
         return std::memcmp(&other, &record, sizeof record) == 0;
     };

@@ -157,18 +157,18 @@ void append_ribbon(
     append_rows(mesh, first, shape.rows);
 }
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using FinEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The edges of triangles, each once: vertices at one position count as one.
-std::vector<Edge> distinct_edges(const MeshData& mesh) {
+std::vector<FinEdge> distinct_edges(const MeshData& mesh) {
     const std::vector<std::uint32_t> welded = weld_positions(mesh.positions);
-    std::set<Edge> known;
-    std::vector<Edge> edges;
+    std::set<FinEdge> known;
+    std::vector<FinEdge> edges;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = mesh.indices[i + k];
             const std::uint32_t b = mesh.indices[i + (k + 1) % 3];
-            const Edge ends = std::minmax(welded[a], welded[b]);
+            const FinEdge ends = std::minmax(welded[a], welded[b]);
             if (ends.first != ends.second && known.insert(ends).second) {
                 edges.emplace_back(a, b);
             }
@@ -215,7 +215,7 @@ class RootedMesh {
 };
 
 void append_fin(
-    MeshData& mesh, RootedMesh& rooted, int rows, const MeshData& skin, const Edge& edge,
+    MeshData& mesh, RootedMesh& rooted, int rows, const MeshData& skin, const FinEdge& edge,
     float first_u) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const float width = glm::distance(skin.positions[edge.first], skin.positions[edge.second]);
@@ -284,7 +284,7 @@ MeshData make_fins(const FinsShape& shape, const Assets& assets) {
     }
     RootedMesh rooted(mesh, skin);
     float u = 0;
-    for (const Edge& edge : distinct_edges(skin)) {
+    for (const FinEdge& edge : distinct_edges(skin)) {
         append_fin(mesh, rooted, shape.rows, skin, edge, u);
         u = std::fmod(u + 0.377f, 10.0f);
     }
