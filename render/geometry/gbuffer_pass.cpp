@@ -7,12 +7,10 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/light/hatched_view.h"
-#include "render/light/light_pass.h"
 #include "render/light/lighting.h"
 #include "render/material/fur_hook.h"
 #include "render/material/material_pool.h"
 #include "render/render_frame.h"
-#include "render/shaders/light_gpu.h"
 #include "render/shadow/volume_list.h"
 #include "render/view_block.h"
 
@@ -140,9 +138,10 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
             variant.add_if(view.gbuffer.layers.valid(), "LAYER_TARGETS");
             variant.add_if(view.gbuffer.key_light.valid(), "KEY_SHADOWS");
             variant.add_if(view.data.find<HatchedView>() != nullptr, "HATCHED");
-            bind_view(context, view);
             if (view.gbuffer.key_light.valid()) {
-                view.data.get<LightRecords>().records.bind(context.device(), layout::kLightsUnit);
+                bind_lighting(context, view);
+            } else {
+                bind_view(context, view);
             }
             draw_runs(
                 context, view, view.data.get<InstanceList>().opaque, programs,

@@ -10,7 +10,7 @@ const uint kGbufferUnit = 5u;
 const uint kDepthUnit = 6u;
 const uint kGbufferMaterialUnit = 13u;
 const uint kVelocityUnit = 14u;
-const uint kGbufferKeyLightUnit = 34u;
+const uint kGbufferKeyLightUnit = 35u;
 
 #ifdef __cplusplus
 }  // namespace limn::layout
