@@ -380,7 +380,11 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(
         relief_shadow, .doc = "how relief shadows itself: in shadow maps, by a second ray, or not",
         .values = "map ray none");
-    LIMN_FIELD(tessellation, "displaced: length of an edge on screen", "px", 1, 100);
+    LIMN_FIELD(
+        tessellation,
+        "displaced: length of the parts of an edge on screen; there are at most 64, on software "
+        "OpenGL 15",
+        "px", 1, 100);
     LIMN_FIELD(
         normal_mips,
         .doc = "what coarser mip levels of the normal map keep of its bumps: their mean direction, "
@@ -408,7 +412,7 @@ LIMN_FIELDS(Material) {
         relief_texture,
         "replaces normal_texture where `detail` needs it: red, green = tangent-space normal, alpha "
         "= depth, 0 on the mesh and 1 deepest; blue = depth of the back surface (double_depth) or "
-        "ratio of the widest empty cone (cone)");
+        "ratio of the widest empty cone (cone); for odd the map that `limn bake odd` makes");
     LIMN_FIELD(clearcoat_texture, "red = factor of clearcoat");
     LIMN_FIELD(clearcoat_roughness_texture, "green = factor of clearcoat_roughness");
     LIMN_FIELD(clearcoat_normal_texture, "tangent-space normals of the clear coat, green up");
