@@ -6,6 +6,7 @@
 #include "render/environment/sky_pass.h"
 #include "render/geometry/aov_pass.h"
 #include "render/geometry/blend_pass.h"
+#include "render/geometry/curvature_view_pass.h"
 #include "render/geometry/gbuffer_pass.h"
 #include "render/geometry/tangent_frames_pass.h"
 #include "render/lens/dazzle_pass.h"
@@ -79,7 +80,8 @@ constexpr EffectEntry kImage[] = {
     effect<ParticleEffect>(kSceneViews),  // those behind blended surfaces
     effect<BlendEffect>(kSceneViews),     // after sky and water, which are visible through it
     effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces
-    effect<SpeedLineEffect>(kMainViews), effect<TangentFramesEffect>(kMainViews),
+    effect<SpeedLineEffect>(kMainViews), effect<CurvatureViewEffect>(kMainViews),
+    effect<TangentFramesEffect>(kMainViews),
 
     // The end of views other than the camera's.
     effect<ProbeEffect>(kSceneViews),  // requests its faces as views; lights all others

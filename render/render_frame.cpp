@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/curvature_view.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
@@ -313,7 +314,8 @@ void Renderer::update_assets() {
     const auto* rendering = frame_.world->find_resource<Rendering>();
     materials_.update(
         assets, replaced, rendering != nullptr ? rendering->surface_detail : DetailLimit::Full);
-    meshes_.update(assets.meshes, materials_.curves());
+    const bool viewed = frame_.world->find_resource<CurvatureView>() != nullptr;
+    meshes_.update(assets.meshes, materials_.curves() || viewed);
 }
 
 /// Effects that some view of this frame may use; creates them when they are first used.

@@ -31,6 +31,7 @@
 #include "systems/particles/point_mass_system.h"
 #include "systems/particles/trail_system.h"
 #include "systems/path_system.h"
+#include "systems/relief_box_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
 #include "systems/spin_system.h"
@@ -62,6 +63,7 @@ void add_object_systems(SystemList& systems) {
     systems.add<end_lifetimes>(Events);
     systems.add<add_world_transforms>(Create);
     systems.add<add_env_probe_states>(Create, Both);
+    systems.add<add_relief_box_states>(Create, Both);
     systems.add<update_spins>(Move);
     systems.add<update_sways>(Move, Both);
     systems.add<update_ripples>(Move);
@@ -144,7 +146,8 @@ void add_camera_systems(SystemList& systems) {
     systems.add<update_orbit_cameras>(View, Both);
     systems.add<update_autofocus>(View, Both);  // after everything that moves cameras
     systems.add<adjust_lenses>(View);
-    systems.add<choose_mesh_levels>(View, Both);  // after everything that moves cameras
+    systems.add<choose_mesh_levels>(View, Both);   // after everything that moves cameras
+    systems.add<update_relief_boxes>(View, Both);  // likewise
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/curvature_view.h"
 #include "ecs/components/dazzle.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/env_probe.h"
@@ -39,6 +40,7 @@
 #include "ecs/components/point_mass.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
+#include "ecs/components/relief_box.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
 #include "ecs/components/rotation_track.h"
@@ -115,6 +117,8 @@ void register_all_components() {
     register_component<Sway>();
     register_component<MeshInstance>();
     register_component<MeshLevels>();
+    register_component<ReliefBox>();
+    register_component<ReliefBoxState>();
     register_component<Inflate>();
     register_component<ToonOutline>();
     register_component<Fur>();
@@ -205,6 +209,7 @@ void register_all_components() {
     register_resource<Glare>();
     register_resource<Vignette>();
     register_resource<TangentFrames>();
+    register_resource<CurvatureView>();
     register_resource<InkLines>();
     register_resource<Hatching>();
     register_resource<LensRain>();

@@ -203,7 +203,7 @@ void InstanceCollector::count_block(
     const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
     BlockWork& work) const {
     KeyTable table(work.keys);
-    if (selection.casters != nullptr && !block.casts_shadows) {
+    if (selection.casters != nullptr ? !block.casts_shadows : !block.visible) {
         return;
     }
     const BoxBlock& boxes = block.boxes;

@@ -5,6 +5,7 @@
 #include "ecs/components/fur.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/particle_mesh.h"
+#include "ecs/components/relief_box.h"
 #include "ecs/components/shadow.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
@@ -110,6 +111,7 @@ void RenderItems::update(
         block.shells = {};
         block.jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
         block.casts_shadows = !chunk.has<NoShadow>();
+        block.visible = true;
         block.inside_out_ = false;
         block.archetype_ = &chunk.archetype();
         block.first_row_ = chunk.first_row();
@@ -122,6 +124,7 @@ void RenderItems::update(
     add_particles();
     add_outlines();
     add_shells();
+    add_relief_boxes();
     epoch_ = world.core().epoch;
     version_ = world.version();
     mesh_revision_ = meshes.revision();
@@ -140,6 +143,7 @@ RenderItemBlock& RenderItems::add_block() {
     block.copies_.inflate.clear();
     block.copies_.shells.clear();
     block.inside_out_ = false;
+    block.visible = true;
     return block;
 }
 
@@ -250,6 +254,65 @@ void RenderItems::add_shells() {
             const Fur, const MeshInstance, const WorldTransform,
             Optional<const PreviousWorldTransform>>()
         .each(add);
+}
+
+void RenderItems::add_relief_boxes() {
+    // Parts that are drawn and cast shadows, that only cast shadows, and that are only drawn.
+    struct Kind {
+        bool visible;
+        bool casts_shadows;
+        RenderItemBlock* block = nullptr;
+    };
+    Kind kinds[] = {{true, true}, {false, true}, {true, false}};
+    const auto* const jumps = world_->find_resource<StepJumps>();
+    const auto add_part = [&](Kind& kind, Entity entity, const ReliefBoxPart& part,
+                              const Affine& now, const Affine& previous) {
+        const std::vector<MeshRange>& meshes = meshes_->meshes();
+        if (part.mesh.index >= meshes.size() || meshes[part.mesh.index].index_count == 0) {
+            return;
+        }
+        if (kind.block == nullptr || kind.block->copies_.now.size() == kCullBlock) {
+            if (kind.block != nullptr) {
+                use_copies(*kind.block);
+            }
+            kind.block = &add_block();
+            kind.block->visible = kind.visible;
+            kind.block->casts_shadows = kind.casts_shadows;
+            kind.block->jumps = jumps != nullptr && !jumps->transforms.empty() ? jumps : nullptr;
+        }
+        RenderItemBlock::Copies& copies = kind.block->copies_;
+        copies.entities.push_back(entity);
+        copies.surfaces.push_back({part.mesh, part.material});
+        copies.now.push_back({now});
+        copies.previous.push_back({previous});
+    };
+    const auto add = [&](Entity entity, const ReliefBox& box, const ReliefBoxState& state,
+                         const WorldTransform& now, const PreviousWorldTransform* previous) {
+        const Affine unit_box = affine_from({0, 0, 0}, {1, 0, 0, 0}, box.size);
+        const Affine at = now.world * unit_box;
+        const Affine was = previous != nullptr ? previous->world * unit_box : at;
+        const bool sliced = state.slice_count > 0;
+        const bool casts = !world_->has<NoShadow>(entity);
+        for (int i = 0; i < kReliefFaces; ++i) {
+            const auto face = static_cast<std::size_t>(i);
+            if (sliced) {
+                add_part(kinds[2], entity, state.sliced[face], at, was);
+            }
+            if (!sliced || casts) {
+                add_part(kinds[sliced ? 1 : casts ? 0 : 2], entity, state.searched[face], at, was);
+            }
+        }
+    };
+    world_
+        ->query<
+            const ReliefBox, const ReliefBoxState, const WorldTransform,
+            Optional<const PreviousWorldTransform>>()
+        .each(add);
+    for (const Kind& kind : kinds) {
+        if (kind.block != nullptr) {
+            use_copies(*kind.block);
+        }
+    }
 }
 
 void RenderItems::refresh(RenderItemBlock& block) const {

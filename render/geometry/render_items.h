@@ -83,6 +83,7 @@ struct RenderItemBlock {
     std::span<const FurShell> shells;                  ///< empty: not shells of fur
     const StepJumps* jumps = nullptr;                  ///< null: none in the last step
     bool casts_shadows = true;                         ///< no NoShadow
+    bool visible = true;                               ///< not only casts shadows
 
     /// World-space boxes. Items that cannot be drawn (no such mesh, no triangles, a transform that
     /// is not finite) have a box outside every frustum.
@@ -172,6 +173,7 @@ class RenderItems {
     [[nodiscard]] Bounds
     moved_bounds(const RenderItemBlock& block, std::size_t i, const Bounds& box) const;
     void add_shells();
+    void add_relief_boxes();
     void refresh(RenderItemBlock& block) const;
     void hash_block(RenderItemBlock& block) const;
 

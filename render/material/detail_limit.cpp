@@ -1,5 +1,7 @@
 #include "render/material/detail_limit.h"
 
+#include "ecs/components/relief_box.h"
+
 #include <cstddef>
 
 // Techniques: relief.selection
@@ -32,6 +34,9 @@ constexpr SurfaceDetail kFallsTo[kDetailLimits] = {
 }  // namespace
 
 SurfaceDetail limited_detail(SurfaceDetail detail, DetailLimit limit) {
+    if (detail >= kReliefBoxDetail) {
+        return detail;  // without a search nothing would be left of it but its box
+    }
     return limit >= kExceeded[static_cast<std::size_t>(detail)]
                ? kFallsTo[static_cast<std::size_t>(limit)]
                : detail;

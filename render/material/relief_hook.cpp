@@ -1,10 +1,14 @@
 #include "render/material/relief_hook.h"
 
+#include "ecs/components/relief_box.h"
 #include "render/gpu/device_caps.h"
 #include "render/material/material_maps.h"
 #include "render/material/surface_features.h"
 
-// Techniques: relief.permutations, relief.selection
+#include <cstddef>
+#include <iterator>
+
+// Techniques: relief.compare, relief.permutations, relief.selection
 
 namespace limn {
 namespace {
@@ -18,7 +22,8 @@ constexpr HookDefinition kReliefDefinitions[] = {
     {kReliefClosed, "RELIEF_CLOSED"},  {kReliefCurved, "RELIEF_CURVED"},
     {kReliefShifted, "SHIFTED_UV"},    {kReliefOffMesh, "OFF_MESH"},
     {kReliefObject, "OBJECT_NORMALS"}, {kReliefRays, "RELIEF_RAYS"},
-    {kReliefBottom, "RELIEF_BOTTOM"},  {kReliefDisplaced, "RELIEF_DISPLACED"},
+    {kReliefBottom, "RELIEF_BOTTOM"},  {kReliefBoxed, "RELIEF_BOX"},
+    {kReliefSliced, "RELIEF_SLICES"},  {kReliefDisplaced, "RELIEF_DISPLACED"},
     {kReliefOdd, "RELIEF_ODD"},
 };
 
@@ -39,11 +44,24 @@ constexpr std::uint16_t kReliefOfDetail[] = {
     kReliefDisplaced,
 };
 
+/// Of parts of relief boxes, in the order of their details.
+constexpr std::uint16_t kReliefOfBox[] = {
+    kReliefBoxed | kBelow,
+    kReliefBoxed | kReliefClosed | kBelow,
+    kReliefBoxed | kReliefSliced | kReliefOffMesh,
+    kReliefBoxed | kReliefSliced | kReliefClosed | kReliefOffMesh,
+};
+
 std::uint16_t relief_of_material(const Material& material) {
-    std::uint16_t bits = kReliefOfDetail[static_cast<std::size_t>(material.detail)];
+    const auto detail = static_cast<std::size_t>(material.detail);
+    const std::size_t in_box = detail - static_cast<std::size_t>(kReliefBoxDetail);
+    std::uint16_t bits = detail < std::size(kReliefOfDetail) ? kReliefOfDetail[detail]
+                         : in_box < std::size(kReliefOfBox)  ? kReliefOfBox[in_box]
+                                                             : std::uint16_t{0};
     // What two directions see of an ODD map agrees to a cell of it: too little to shadow itself.
     const bool odd = (bits & kReliefOdd) != 0;
-    if ((bits & kReliefOffMesh) != 0 && (material.relief_shadow != ReliefShadow::Map || odd)) {
+    const bool other = material.relief_shadow != ReliefShadow::Map || odd;
+    if ((bits & kReliefOffMesh) != 0 && (bits & kReliefBoxed) == 0 && other) {
         bits |= kReliefBottom;
         bits |= material.relief_shadow == ReliefShadow::Ray && !odd ? kReliefRays : 0;
     }

@@ -29,6 +29,8 @@ enum ReliefFeature : std::uint16_t {
     kReliefObject = 1u << 9,   // the normal map is in mesh space
     kReliefRays = 1u << 10,    // key lights are shadowed by a second ray (key_shadows.glsl)
     kReliefBottom = 1u << 11,  // casts shadows as its bottom, so that none falls on itself
+    kReliefBoxed = 1u << 12,   // in a ReliefBox, which ends at its sides
+    kReliefSliced = 1u << 13,  // with kReliefBoxed: fragments are in the box, on planes
     kReliefDisplaced = 1u << 14,
     kReliefOdd = 1u << 15,
 };

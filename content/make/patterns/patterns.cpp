@@ -15,6 +15,7 @@
 #include "content/make/patterns/pattern_tools.h"
 #include "content/make/patterns/puff_pattern.h"
 #include "content/make/patterns/relief_patterns.h"
+#include "content/make/patterns/solid_pattern.h"
 #include "content/make/patterns/sprite_patterns.h"
 #include "content/make/patterns/studio_pattern.h"
 
@@ -435,6 +436,9 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),
         pattern_kind<SnowflakePattern, make_snowflake>(
             "snowflake", "a flipbook of different snow crystals"),
+        pattern_kind<SolidPattern, make_solid>(
+            "solid", "a solid as seen through a side of its bounding box, with front and back",
+            PatternKindMaps::Relief),
         pattern_kind<SplashPattern, make_splash>("splash", "a flipbook of water that breaks up"),
         pattern_kind<StainedGlassPattern, make_stained_glass>(
             "stained_glass", "leaded diamonds between two borders; black at the lead"),

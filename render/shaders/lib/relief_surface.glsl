@@ -5,6 +5,7 @@
 //   RELIEF_CONES     cone stepping
 //   RELIEF_CLOSED    the relief has a back surface; texels without a surface are holes
 //   RELIEF_CURVED    the ray bends with the mesh's quadric and may leave the relief: a hole
+//   RELIEF_BOX       the relief is in a box (lib/relief_box.glsl)
 //   RELIEF_BUMP      normals from differences of depth, and nothing else
 //   RELIEF_RAYS      with KEY_SHADOWS: a second ray finds whether the key lights are visible
 //   RELIEF_BOTTOM    with SHADOW_CASTER: the depth of the bottom, so that no shadow falls on the relief itself
@@ -33,6 +34,11 @@ layout(location = 11) in vec2 relief_curvature;
 
 float relief_lod = 0.0;  // of undisplaced texture coordinates: those found by the search are not smooth
 #define RELIEF_TEXEL(at) textureLod(material_maps[RELIEF_MAP], vec3(at, map_layer(map_layers, kReliefSlot)), relief_lod)
+#ifdef RELIEF_BOX
+float relief_start = 0.0;  // depth at which the ray enters the box, from which others count
+#undef RELIEF_TEXEL
+#define RELIEF_TEXEL(at) (textureLod(material_maps[RELIEF_MAP], vec3(at, map_layer(map_layers, kReliefSlot)), relief_lod) - vec4(0.0, 0.0, relief_start, relief_start))
+#endif
 #include "relief_gpu.h"
 #include "relief_search_gpu.h"
 #ifdef RELIEF_ODD
@@ -104,6 +110,9 @@ void find_relief_lod() {
     vec2 dy = map_gradient(kReliefSlot, dFdy(uv)) * size;
     relief_lod = max(0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12)), 0.0);
 }
+#ifdef RELIEF_BOX
+#include "lib/relief_box.glsl"
+#endif
 #endif
 
 #ifdef RELIEF
@@ -122,12 +131,18 @@ int relief_steps(float most, float cosine) {
 #endif
 
 void relief_uv(inout vec4 uv) {
-#if defined(RELIEF) && !defined(RELIEF_BUMP) && !defined(RELIEF_DISPLACED)
+#if defined(RELIEF) && defined(RELIEF_SLICES)
+    vec3 fragment_ws = relief_position.xyz + view.camera_ws.xyz;
+    find_in_box(uv, ray_through(fragment_ws, view.clip_from_world * vec4(fragment_ws, 1.0)));
+#elif defined(RELIEF) && !defined(RELIEF_BUMP) && !defined(RELIEF_DISPLACED)
     vec4 search = block_texel(material_and_flags.x, kReliefBlock, 0);
     float depth = relief_meters(search);
     vec3 position_ws = relief_position.xyz + view.camera_ws.xyz;
     vec4 clip = view.clip_from_world * vec4(position_ws, 1.0);
     vec3 ray_ws = ray_through(position_ws, clip);
+#ifdef RELIEF_BOX
+    find_in_box(uv, ray_ws, clip, search);
+#else
     vec3 normal = normalize(normal_ws);
     float down = -dot(ray_ws, normal);
     ReliefFrame frame = relief_frame(normal);
@@ -202,6 +217,7 @@ void relief_uv(inout vec4 uv) {
     surface_depth = min(gl_FragCoord.z, moved.z / moved.w);
 #endif
 #endif
+#endif
 }
 
 void relief_normal(inout vec3 normal) {
@@ -235,6 +251,9 @@ void relief_normal(inout vec3 normal) {
     vec2 n = MAP_TEXEL(RELIEF_MAP, kReliefSlot).xy * 2.0 - 1.0;
     float z = sqrt(max(1.0 - dot(n, n), 0.01));
     normal.xy += normal.z * material_texel(1).w * n / z;  // slopes of heights add up
+#ifdef RELIEF_BOX
+    normal = dot(box_normal_ts, box_normal_ts) > 0.0 ? normalize(box_normal_ts) : normal;
+#endif
 #endif
 #endif
 }
