@@ -31,7 +31,7 @@ enum class ReliefSlices : std::uint8_t {
 /// they have a back, too, else the object reaches to the other end of the box. Where a ray leaves
 /// the box without a hit, what is behind it is visible. Nothing is drawn for a camera in the box.
 ///
-/// Shadows, mirrors and probes always search along rays; slices need no search in the shader.
+/// Shadow casters are always searched along rays; slices need no search in the shader.
 struct ReliefBox {
     Vec3 size = {1, 1, 1};
     MaterialId front = {};

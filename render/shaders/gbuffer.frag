@@ -32,7 +32,7 @@ layout(location = kMaterialLocation + 1) out uvec4 layers;
 #endif
 #endif
 #ifdef KEY_SHADOWS
-#if defined(LAYER_TARGETS)
+#if defined(MATERIAL_RECORDS) && defined(LAYER_TARGETS)
 layout(location = kMaterialLocation + 2) out vec2 key_light;
 #elif defined(MATERIAL_RECORDS)
 layout(location = kMaterialLocation + 1) out vec2 key_light;

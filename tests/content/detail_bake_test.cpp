@@ -5,6 +5,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/math.h"
 #include "ecs/components/surface.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
@@ -403,8 +404,8 @@ TEST_CASE(
     high.positions[2].z = -0.02f;
     const DetailBake baked = bake(low, high, kSmall);
     const DetailRelief relief = make_relief(baked);
-    CHECK(relief.raised == doctest::Approx(0.08).epsilon(0.02));
-    CHECK(relief.depth == doctest::Approx(0.1).epsilon(0.02));
+    CHECK(relief.raised == test::near(0.08).epsilon(0.02));
+    CHECK(relief.depth == test::near(0.1).epsilon(0.02));
     for (int x = 0; x < kSmall.width; ++x) {
         const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(kSmall.width);
         const float height = -0.02f + 0.1f * u;

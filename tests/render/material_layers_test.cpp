@@ -255,7 +255,8 @@ TEST_CASE(
     "material layers: the strength of the coat's normal map is that of its slope"
     * technique("shade.clear-coat")) {
     Plate plate;
-    Material coated = {.base_color = {0, 0, 0, 1}, .roughness = 0.9f, .clearcoat = 1};
+    Material coated = {
+        .base_color = {0, 0, 0, 1}, .roughness = 0.9f, .clearcoat = 1, .clearcoat_roughness = 0.5f};
     const gpu::FloatImage flat = plate.picture(coated);
     // Half the slope of a texel is another texel: (0.6, 0, 0.8) leans by 3/4, and (3/8, 0, 1) by
     // 3/8.

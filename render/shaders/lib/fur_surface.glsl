@@ -4,18 +4,22 @@
 //   FUR_FIN    or fins
 // Techniques: shade.fur
 
-#ifdef FUR_SHELL
+#if defined(FUR_SHELL) && !defined(LIT_AT_VERTICES)
+#define FUR_DRAWN
+#endif
+
+#ifdef FUR_DRAWN
 #include "lib/fur.glsl"
 #include "lib/fur_record.glsl"
 
-layout(location = 15) in vec4 fur_at;
-layout(location = 16) in vec3 fur_strand;
+layout(location = 20) in vec4 fur_at;
+layout(location = 21) in vec3 fur_strand;
 
 FurPoint fur_here = FurPoint(false, vec4(0.5));
 #endif
 
 void fur_color(inout vec4 color) {
-#ifdef FUR_SHELL
+#ifdef FUR_DRAWN
     uint flags = material_and_flags.y;
     vec4 ends = fur_texel(flags, 3);
     vec2 per_pixel = max(abs(dFdx(fur_at.xy)), abs(dFdy(fur_at.xy)));
@@ -36,7 +40,7 @@ void fur_color(inout vec4 color) {
 }
 
 void fur_sample(inout SurfaceSample s, vec3 smooth_normal) {
-#ifdef FUR_SHELL
+#ifdef FUR_DRAWN
     s.occlusion *= mix(fur_texel(material_and_flags.y, 3).w, 1.0, fur_at.z);
 #ifdef STRANDS
     float unruly = fur_texel(material_and_flags.y, 2).w;

@@ -3,8 +3,8 @@
 // Techniques: shade.fur
 
 #ifdef FUR_SHELL
-layout(location = 15) out vec4 fur_at;      // root in cells; z: height; w: cosine of the normal to the viewer
-layout(location = 16) out vec3 fur_strand;  // toward the tip, world space, not unit
+layout(location = 20) out vec4 fur_at;      // root in cells; z: height; w: cosine of the normal to the viewer
+layout(location = 21) out vec3 fur_strand;  // toward the tip, world space, not unit
 #endif
 
 void fur_vertex(inout vec3 tangent, vec3 normal) {

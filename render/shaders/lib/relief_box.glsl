@@ -5,7 +5,7 @@
 // Included by lib/relief_surface.glsl. Depths are read at the finest level: coarser ones mix what is empty into edges.
 // Techniques: relief.box, relief.multi-face, relief.slices, relief.slices-view
 
-layout(location = 12) flat in mat3 box_from_world;  // steps, to u, v and depth of the map
+layout(location = 22) flat in mat3 box_from_world;  // steps, to u, v and depth of the map
 
 const float kBoxEnd = 0.996;  // depths from here on are empty (Policarpo and Oliveira 2005)
 

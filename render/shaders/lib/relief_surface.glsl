@@ -131,7 +131,7 @@ int relief_steps(float most, float cosine) {
 #endif
 
 void relief_uv(inout vec4 uv) {
-#if defined(RELIEF) && defined(RELIEF_SLICES)
+#if defined(RELIEF) && defined(RELIEF_BOX) && defined(RELIEF_SLICES)
     vec3 fragment_ws = relief_position.xyz + view.camera_ws.xyz;
     find_in_box(uv, ray_through(fragment_ws, view.clip_from_world * vec4(fragment_ws, 1.0)));
 #elif defined(RELIEF) && !defined(RELIEF_BUMP) && !defined(RELIEF_DISPLACED)
@@ -186,7 +186,7 @@ void relief_uv(inout vec4 uv) {
     vec3 bitangent = cross(normal, tangent_ws.xyz) * tangent_ws.w;
     vec3 to_viewer = vec3(-dot(ray_ws, tangent_ws.xyz), -dot(ray_ws, bitangent), down);
     vec4 seen = odd_lookup(map_coordinates(kReliefSlot, uv), to_viewer, relief_lod - log2(float(kOddDirections)));
-    odd_normal = depth > 0.0 ? seen.xyz : odd_normal;
+    odd_normal = search.x > 0.0 ? seen.xyz : odd_normal;
     float x = seen.w;
 #elif defined(RELIEF_CONES)
     float x = relief_search_cones(ray, steps, refinements);

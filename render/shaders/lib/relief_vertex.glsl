@@ -11,7 +11,7 @@ layout(binding = kCurvaturesUnit) uniform samplerBuffer curvatures;
 layout(location = 11) out vec2 relief_curvature;  // of the mesh's quadric along tangent and bitangent [1/m]
 #endif
 #ifdef RELIEF_BOX
-layout(location = 12) flat out mat3 box_from_world;  // steps, to u, v and depth of the map
+layout(location = 22) flat out mat3 box_from_world;  // steps, to u, v and depth of the map
 #endif
 #endif
 
