@@ -83,9 +83,10 @@ struct ReliefBoxPart {
 struct ReliefBoxState {
     std::array<ReliefBoxPart, kReliefFaces> searched = {};  ///< by the side whose map they show
     std::array<ReliefBoxPart, kReliefFaces> sliced = {};
-    std::uint32_t faces = 0;  ///< bit per ReliefFace: sides that face the camera
-    int slice_count = 0;      ///< planes of each map; 0: none
-    float set_back = 0;       ///< of shadow casters, since slices lie deeper than the surface [m]
+    std::uint32_t faces = 0;   ///< bit per ReliefFace: sides that face the camera
+    int slice_count = 0;       ///< planes of each map; 0: none
+    float set_back = 0;        ///< of shadow casters, since slices lie deeper than the surface [m]
+    std::uint32_t unused = 0;  ///< no gap in the bytes of a value
     std::uint64_t material_version = 0;  ///< Assets::material_version of the copies
 };
 
