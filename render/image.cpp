@@ -25,6 +25,7 @@
 #include "render/light/highlight_map_pass.h"
 #include "render/light/ink_lines_pass.h"
 #include "render/light/light_pass.h"
+#include "render/light/lobe_tables.h"
 #include "render/light/mirror_caustic_pass.h"
 #include "render/light/shading_comparison_pass.h"
 #include "render/light/shading_marks_pass.h"
@@ -61,6 +62,7 @@ constexpr EffectEntry kImage[] = {
     effect<LightListEffect>(kSceneViews),  // records and clusters
     effect<EnvironmentEffect>(kSceneViews), effect<GbufferEffect>(kSceneViews),
     effect<HighlightMapEffect>(kMainViews),  // precomputed highlights
+    effect<LobeTableEffect>(kSceneViews),    // precomputed lobes
     effect<WaterBodiesEffect>(kSceneViews),  // water surfaces, and what is in the water
     effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
     effect<ParticleShadowEffect>(kSceneViews),  // maps of the light that particles transmit

@@ -7,7 +7,8 @@
 
 namespace limn {
 
-// Techniques: engine.light-loops, fakephong.blinn-axis, light.gouraud, light.infinite-approx
+// Techniques: engine.light-loops, fakephong.blinn-axis, light.gouraud, light.infinite-approx,
+//     shade.control-flow
 
 /// Lighting algorithm. All give the same image at different cost (`limn bench lights`). Blended
 /// surfaces always use clustered lighting.
@@ -114,6 +115,20 @@ enum class DetailLimit : std::uint8_t {
 inline constexpr int kDetailLimits = 6;
 inline constexpr const char* kDetailLimitNames = "full relief occlusion parallax normal flat";
 
+/// What gives the lobes of Blinn, Phong, Skin and Strand.
+enum class LobeSource : std::uint8_t {
+    Computed,  ///< arithmetic
+    Table,     ///< a texture of the cosines of diffuse light and highlight (shade.phong-lut)
+    Factors,   ///< a texture for each factor, which are recombined (shade.factorise)
+};
+
+/// How shaders run through the directional lights.
+enum class LightLoops : std::uint8_t {
+    Uniform,   ///< a loop whose count is a uniform
+    Unrolled,  ///< the count is a constant of the program: no loop is left (shade.control-flow)
+    Auto,      ///< unrolled where few lights and little code make it pay (branch_cost.h)
+};
+
 /// Resource: rendering settings. Absent: the defaults.
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
@@ -124,6 +139,8 @@ struct Rendering {
     bool screen_interpolation = false;
     HardwareDefects hardware = {};
     DetailLimit surface_detail = DetailLimit::Full;
+    LobeSource lobes = LobeSource::Computed;
+    LightLoops light_loops = LightLoops::Uniform;
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
     float particle_share = 1;      ///< of those that the GPU moves, see below
@@ -163,6 +180,16 @@ LIMN_FIELDS(Rendering) {
         .doc = "the dearest way in which surfaces show detail: materials whose `detail` is dearer "
                "fall to it",
         .values = kDetailLimitNames);
+    LIMN_FIELD(
+        lobes,
+        .doc = "the light that blinn, phong, skin and strand materials reflect: computed, looked "
+               "up in a table, or recombined from tables of its factors",
+        .values = "computed table factors");
+    LIMN_FIELD(
+        light_loops,
+        .doc = "the loop over directional lights: with a uniform count, or unrolled for their "
+               "number, a program for each; auto: where it pays",
+        .values = "uniform unrolled auto");
     LIMN_FIELD(
         antialiasing,
         .doc = "antialiasing method; auto: temporal when played, samples when rendered",

@@ -4,6 +4,7 @@
 #include "ecs/components/shading_comparison.h"
 #include "ecs/world.h"
 #include "render/geometry/instance_list.h"
+#include "render/gpu/branch_cost.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/material/shading_models.h"
@@ -45,6 +46,14 @@ BufferId create_cells(FrameGraph& graph, const ClusterShape& shape) {
 
 BufferId create_indices(FrameGraph& graph, std::size_t capacity) {
     return graph.create_buffer({.name = "light indices", .bytes = rounded(4 * capacity)});
+}
+
+/// Whether the loop over directional lights is unrolled. One pass reads a shadow and evaluates a
+/// lobe, some 120 cycles.
+bool unrolls(LightLoops loops, int count) {
+    constexpr double kLightCycles = 120;
+    return loops == LightLoops::Unrolled
+           || (loops == LightLoops::Auto && gpu::should_unroll(count, kLightCycles));
 }
 
 /// The empty lists of a view without lights.
@@ -179,6 +188,9 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
 
     Variant& variant = view.lighting.variant;
     variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");
+    if (lights.directional > 0 && unrolls(rendering.light_loops, lights.directional)) {
+        variant.add("DIRECTIONAL_COUNT", lights.directional);
+    }
     variant.add_if(lights.spots > 0, "SPOT_LIGHTS");
     variant.add_if(lights.spot_angles, "SPOT_ANGLES");
     variant.add_if(lights.linear_fade, "LINEAR_FADE");

@@ -3,6 +3,7 @@
 // Reflector::own: x = shininess, yzw = direction of the strands.
 // Techniques: shade.strand-banks
 
+#include "lib/lobe_tables.glsl"
 #include "lib/material_record.glsl"
 #include "lib/strand.glsl"
 
@@ -18,6 +19,9 @@ void prepare_strand(inout Reflector r, SurfaceSample s) {
     r.specular_0 = specular.rgb;
     r.mirror = vec3(0.0);
 #ifdef STRANDS
+#ifdef LOBE_FACTORS
+    specular.a = lobe_layer(s.material);
+#endif
     r.own = vec4(specular.a, s.strand_ws == vec3(0.0) ? some_strand(s.normal_ws) : s.strand_ws);
 #endif
 }
@@ -25,6 +29,12 @@ void prepare_strand(inout Reflector r, SurfaceSample s) {
 Response lobe_strand(Reflector r, Cosines c) {
     float u = dot(c.to_light, r.own.yzw);
     float v = dot(r.to_camera, r.own.yzw);
+#ifdef LOBE_FACTORS
+    float diffuse = lobe_sine(u);
+    float highlight = lobe_power(max(diffuse * lobe_sine(v) - u * v, 0.0), r.own.x);
+#else
+    float diffuse = strand_diffuse(u);
     float highlight = pow(strand_mirrored(u, v), r.own.x);
-    return Response(vec3(c.n_l * strand_diffuse(u)), c.n_l * highlight / kPi, 0.0);
+#endif
+    return Response(vec3(c.n_l * diffuse), c.n_l * highlight / kPi, 0.0);
 }

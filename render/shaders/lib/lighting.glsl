@@ -1,6 +1,7 @@
 // Shading of a surface by every light of the pixel's cell and by the environment. Definitions, which only save a
 // software OpenGL needless work:
 //   DIRECTIONAL_LIGHTS  there are directional lights
+//   DIRECTIONAL_COUNT   their number, a constant, so that their loop is unrolled (shade.control-flow)
 //   SPOT_LIGHTS         some light is a spot
 //   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
 //   LINEAR_FADE         some polynomial has a linear term
@@ -11,7 +12,7 @@
 //   MIRRORS             some water reflects the sun's light upward
 //   KEY_SHADOWS         surfaces know the visibility of the key lights
 //   PARTICLE_SHADOWS    particles cast shadows: 1: in the first directional light, 2: in a spot with a shadow
-// Techniques: env.reflect, shade.lighting-space, skin.transmission, wrinkle.compression.bump-blend,
+// Techniques: env.reflect, shade.control-flow, shade.lighting-space, skin.transmission, wrinkle.compression.bump-blend,
 //     wrinkle.fold-light
 
 #include "lib/diffusion.glsl"
@@ -200,7 +201,11 @@ int existing_light(int index) {
 void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pixel) {
     // Loops test after their body: if tested before, a software OpenGL runs one more masked iteration.
 #ifdef DIRECTIONAL_LIGHTS
+#ifdef DIRECTIONAL_COUNT
+    const int directional = DIRECTIONAL_COUNT;
+#else
     int directional = int(view.grid_depth.z);
+#endif
     int n = 0;
     do {
         Incoming light = incoming_directional(n, position_ws, body_normal(r), pixel);
