@@ -128,8 +128,12 @@ LIMN_SEARCH float relief_search_cones(ReliefRay ray, int steps, int refinements 
 // The ray to a light from a point `depth` below the mesh, reversed: it enters at x = 0 and reaches the point at x = 1.
 // `up` and `fall`: as down and fall of relief_range(), of the direction to the light; y: its length [m].
 LIMN_SHARED ReliefRay relief_light_ray(vec2 uv, vec2 travel_to_light, float up, float fall, float length, float relief) {
-    float bend = fall * length * length / relief;
-    return ReliefRay(vec2(uv.x + travel_to_light.x, uv.y + travel_to_light.y), vec2(-travel_to_light.x, -travel_to_light.y), up * length / relief + 2.0f * bend, bend);
+    ReliefRay ray;
+    ray.uv = uv + travel_to_light;
+    ray.travel = -travel_to_light;
+    ray.bend = fall * length * length / relief;
+    ray.slope = up * length / relief + 2.0f * ray.bend;
+    return ray;
 }
 
 // Length [m] of the ray that leaves through the mesh from a point `depth` [m] below it.
