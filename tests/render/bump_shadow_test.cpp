@@ -3,6 +3,7 @@
 #include "render/light/bump_strategy.h"
 #include "render/light/light_list.h"
 #include "tests/near.h"
+#include "tests/render/normal_images.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/technique.h"
 
@@ -77,18 +78,7 @@ struct BumpScene : Scene {
         return picture(m).at(8, 8, 0);
     }
     TextureSlot map_of(const std::vector<Vec3>& normals, int width = 1) {
-        ImageData image = {
-            .name = "normals",
-            .width = width,
-            .height = static_cast<int>(normals.size()) / width,
-            .format = PixelFormat::Rgba32F,
-            .pixels = {}};
-        for (const Vec3& normal : normals) {
-            const Vec4 texel(normal * 0.5f + 0.5f, 1);
-            const auto* bytes = reinterpret_cast<const std::uint8_t*>(&texel);
-            image.pixels.insert(image.pixels.end(), bytes, bytes + sizeof texel);
-        }
-        return {.image = add(std::move(image)), .nearest = true};
+        return {.image = add(image_of_normals(width, normals)), .nearest = true};
     }
     /// White, without highlights, its bumps all leaning the same way.
     Material matte(const Vec3& normal, BumpShadow shadow) {

@@ -2,6 +2,7 @@
 #include "render/material/image_pool.h"
 #include "render/material/normal_mips.h"
 #include "tests/near.h"
+#include "tests/render/normal_images.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
 #include "tests/technique.h"
@@ -23,21 +24,6 @@ namespace {
 using DVec3 = glm::dvec3;
 
 constexpr NormalMips kAllMips[] = {NormalMips::Plain, NormalMips::Toksvig, NormalMips::Lean};
-
-ImageData image_of_normals(int width, const std::vector<Vec3>& normals) {
-    ImageData image = {
-        .name = "normals",
-        .width = width,
-        .height = static_cast<int>(normals.size()) / width,
-        .format = PixelFormat::Rgba32F,
-        .pixels = {}};
-    for (const Vec3& normal : normals) {
-        const Vec4 texel(normal * 0.5f + 0.5f, 1);
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&texel);
-        image.pixels.insert(image.pixels.end(), bytes, bytes + sizeof texel);
-    }
-    return image;
-}
 
 ImageData image_of_bytes(int width, int height, const std::vector<std::uint8_t>& bytes) {
     return {.name = "normals", .width = width, .height = height, .pixels = bytes};
