@@ -64,6 +64,55 @@ Status check_rows(
     return Done{};
 }
 
+bool is_valid(const JointFreedom& freedom, std::size_t joints) {
+    const float length = glm::length(freedom.axis);
+    return freedom.joint < joints && std::abs(length - 1) < 1e-3f && freedom.min <= freedom.middle
+           && freedom.middle <= freedom.max && is_finite(freedom.min) && is_finite(freedom.max)
+           && freedom.stiffness >= 0 && freedom.stiffness <= 1;
+}
+
+Status check_freedoms(const SkeletonData& skeleton) {
+    std::size_t of_joint = 0;
+    for (std::size_t i = 0; i < skeleton.freedoms.size(); ++i) {
+        const JointFreedom& freedom = skeleton.freedoms[i];
+        const bool is_next = i > 0 && freedom.joint == skeleton.freedoms[i - 1].joint;
+        of_joint = is_next ? of_joint + 1 : 1;
+        const bool is_sorted = i == 0 || skeleton.freedoms[i - 1].joint <= freedom.joint;
+        if (!is_valid(freedom, skeleton.joints.size()) || of_joint > 3 || !is_sorted) {
+            return fail(
+                "skeleton {}: freedom {}, of joint {}, is invalid: expected ascending joints, at "
+                "most three of each, unit axes, min <= middle <= max, stiffness 0 to 1",
+                skeleton.name, i, freedom.joint);
+        }
+    }
+    return Done{};
+}
+
+Status check_marks(const ClipData& clip, std::size_t joints) {
+    float begin = 0;
+    for (const ClipContact& contact : clip.contacts) {
+        const bool is_inside =
+            contact.begin >= begin && contact.end >= contact.begin && contact.end <= clip.duration;
+        if (!is_inside || contact.joint >= joints) {
+            return fail(
+                "clip {}: a contact of joint {} from {} to {} s, expected a joint less than {} and "
+                "ascending times within 0 to {} s",
+                clip.name, contact.joint, contact.begin, contact.end, joints, clip.duration);
+        }
+        begin = contact.begin;
+    }
+    float time = 0;
+    for (const ClipEvent& event : clip.events) {
+        if (!(event.time >= time && event.time <= clip.duration)) {
+            return fail(
+                "clip {}: event {} at {} s, expected ascending times within 0 to {} s", clip.name,
+                event.name, event.time, clip.duration);
+        }
+        time = event.time;
+    }
+    return Done{};
+}
+
 Status check_times(const std::string& where, const std::vector<float>& times) {
     if (times.empty()) {
         return fail("{}: no keys", where);
@@ -106,7 +155,7 @@ Status check_skeleton(const SkeletonData& skeleton) {
                 skeleton.joints[i]);
         }
     }
-    return Done{};
+    return check_freedoms(skeleton);
 }
 
 Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs) {
@@ -130,7 +179,7 @@ Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs) 
             return fail("{}: a rotation of length 0", where);
         }
     }
-    return Done{};
+    return check_marks(clip, joints);
 }
 
 Status check_skin(const SkinData& skin, std::size_t joints) {

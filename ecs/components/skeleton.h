@@ -44,6 +44,17 @@ struct LocalPose {
     [[nodiscard]] std::size_t size() const { return rotations.size(); }
 };
 
+/// One axis about which a joint may turn, from its rest rotation: a knee has one, a hip three. The
+/// rotation of a joint is rest * r(first) * r(second) * r(third), each r(angle) about its axis.
+struct JointFreedom {
+    std::uint16_t joint = 0;
+    Vec3 axis = {1, 0, 0};    ///< unit, in the joint's space
+    float min = -3.1415927f;  ///< angles [rad], min <= middle <= max
+    float max = 3.1415927f;
+    float middle = 0.0f;     ///< the most comfortable angle
+    float stiffness = 0.0f;  ///< how strongly inverse kinematics prefers `middle`, 0 .. 1
+};
+
 /// Joints are sorted parents first, so that one pass computes all matrices
 /// (char.skeleton-hierarchy).
 struct SkeletonData {
@@ -51,6 +62,8 @@ struct SkeletonData {
     std::vector<std::string> joints;    ///< names
     std::vector<std::int32_t> parents;  ///< index of an earlier joint; -1 for the first, the root
     LocalPose rest;
+    std::vector<JointFreedom> freedoms = {};  ///< at most three a joint, ascending by joint; a
+                                              ///< joint without any turns freely
 };
 
 /// Interpolation between two keys, as in glTF.
@@ -76,11 +89,26 @@ struct ClipSheet {
     std::vector<float> weights;
 };
 
+/// An interval of a clip in which a joint does not move: a planted foot, a hand on a rail.
+struct ClipContact {
+    std::uint16_t joint = 0;
+    float begin = 0.0f;  ///< [s], 0 <= begin <= end <= duration
+    float end = 0.0f;    ///< [s]
+};
+
+/// Something that happens at a time of a clip: "step", "throw".
+struct ClipEvent {
+    std::string name;
+    float time = 0.0f;  ///< [s], 0 .. duration
+};
+
 /// Animation clip of a skeleton. Joints without keys keep their rest pose.
 struct ClipData {
     std::string name;
     float duration = 0.0f;  ///< time of the last key [s]
     std::vector<ClipSheet> sheets;
+    std::vector<ClipContact> contacts = {};  ///< ascending by `begin`
+    std::vector<ClipEvent> events = {};      ///< ascending by time
 };
 
 /// Skin of a mesh: its joint indices refer to these lists.
@@ -122,12 +150,12 @@ struct MorphTarget {
 };
 
 /// Fails with one line: arrays of different length, a parent that is not an earlier joint, a second
-/// root, numbers that are not finite, a rotation of length 0.
+/// root, numbers that are not finite, a rotation of length 0, an invalid freedom.
 [[nodiscard]] Status check_skeleton(const SkeletonData& skeleton);
 
 /// Likewise: no keys, times that do not increase (with the index of the key), rows of the wrong
 /// length, joints beyond `joints`, morph weights beyond `morphs`, duplicates, numbers that are not
-/// finite.
+/// finite, contacts and events outside the clip.
 [[nodiscard]] Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs);
 
 /// Likewise: an empty list, a joint beyond `joints`, a matrix that is not finite or has no inverse.

@@ -77,16 +77,20 @@ struct MeshData {
     std::uint32_t version = 0;
 };
 
-enum class PixelFormat : std::uint8_t { Rgba8, Rgba16F, Rgba32F };
+/// Bc5 (two channels: the x and y of a normal) and Bc7 (four channels) are blocks of 4x4 pixels in
+/// 16 bytes, row by row of blocks; an incomplete block at the right or the bottom is a whole one.
+enum class PixelFormat : std::uint8_t { Rgba8, Rgba16F, Rgba32F, Bc5, Bc7 };
 
-/// Rows from top to bottom, four channels.
+/// Rows from top to bottom, four channels; or blocks.
 struct ImageData {
     std::string name;
     int width = 0;   ///< pixels, > 0
     int height = 0;  ///< pixels, > 0
     PixelFormat format = PixelFormat::Rgba8;
-    bool srgb = false;                 ///< Rgba8 only: sRGB color that the GPU decodes to linear
-    std::vector<std::uint8_t> pixels;  ///< width * height * (4, 8 or 16) bytes
+    bool srgb = false;   ///< Rgba8 and Bc7 only: sRGB color that the GPU decodes to linear
+    int mip_levels = 1;  ///< levels in `pixels`, the largest first; more than 1 for blocks only
+    std::vector<std::uint8_t>
+        pixels;  ///< width * height * (4, 8 or 16) bytes, or 16 bytes a block of each level
 };
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };

@@ -27,6 +27,9 @@ ImageFormat image_format(const ImageData& image) {
         return {GL_RGBA16F, GL_HALF_FLOAT, 8};
     case PixelFormat::Rgba32F:
         return {GL_RGBA32F, GL_FLOAT, 16};
+    case PixelFormat::Bc5:
+    case PixelFormat::Bc7:
+        break;
     }
     return {GL_RGBA8, GL_UNSIGNED_BYTE, 4};
 }

@@ -94,6 +94,9 @@ Vec4 decoded(PixelFormat format, const std::uint8_t* texel) {
     }
     case PixelFormat::Rgba32F:
         break;
+    case PixelFormat::Bc5:
+    case PixelFormat::Bc7:
+        return {};
     }
     Vec4 value;
     std::memcpy(&value, texel, sizeof value);
@@ -126,6 +129,9 @@ void append_texel(std::vector<std::uint8_t>& bytes, PixelFormat format, const Ve
         break;
     case PixelFormat::Rgba32F:
         append_bytes(bytes, texel);
+        break;
+    case PixelFormat::Bc5:
+    case PixelFormat::Bc7:
         break;
     }
 }

@@ -106,12 +106,13 @@ class CacheReader {
 
 template <typename Archive, typename Image>
 void visit_image(Archive& archive, Image& image) {
-    auto& [name, width, height, format, srgb, pixels] = image;
+    auto& [name, width, height, format, srgb, mip_levels, pixels] = image;
     archive(name);
     archive(width);
     archive(height);
     archive(format);
     archive(srgb);
+    archive(mip_levels);
     archive(pixels);
 }
 

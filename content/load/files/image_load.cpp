@@ -144,6 +144,8 @@ std::size_t replace_non_finite(ImageData& image) {
     case PixelFormat::Rgba32F:
         return replace_bits<std::uint32_t>(image.pixels, 0x7f800000u, 0x477fe000u);
     case PixelFormat::Rgba8:
+    case PixelFormat::Bc5:
+    case PixelFormat::Bc7:
         break;
     }
     return 0;

@@ -38,6 +38,9 @@ std::uint8_t obj_code_at(const ImageData& image, std::size_t texel, std::size_t 
     case PixelFormat::Rgba32F:
         std::memcpy(&value, &image.pixels[4 * i], sizeof(value));
         break;
+    case PixelFormat::Bc5:
+    case PixelFormat::Bc7:
+        break;
     }
     return obj_code(std::isnan(value) ? 0 : value);
 }
