@@ -148,7 +148,7 @@ const float kReliefShadowThreshold = 0.02f;
 // The fraction of light that reaches the end of `ray`, from relief_light_ray(), at `depth`.
 LIMN_SEARCH float relief_visibility(ReliefRay ray, float depth, int steps, bool is_closed LIMN_MAP) {
     float inside = 0.0f;
-    for (int i = 0; i < steps; ++i) {
+    for (int i = 0; i < steps && inside < kReliefShadowThreshold; ++i) {
         float x = (float(i) + 0.5f) / float(steps);
         float before = depth - kReliefShadowThreshold - relief_depth_at(ray, x);
         inside = max(inside, min(before, -relief_clearance(ray, x, is_closed LIMN_SAME_MAP)));

@@ -120,6 +120,12 @@ void find_relief_lod() {
 int relief_steps(float most, float cosine) {
     return int(most * mix(1.0, 0.35, cosine) + 0.5);
 }
+
+// Of `steps`, no more than two per texel of the level, whose surface is smooth between.
+int relief_steps_of_texels(int steps, ReliefRay ray) {
+    vec2 texels = ray.travel * vec2(textureSize(material_maps[RELIEF_MAP], 0).xy) * exp2(-relief_lod);
+    return min(steps, int(2.0 * length(texels) + 3.5));
+}
 #endif
 
 #if defined(RELIEF_BOTTOM) && defined(SHADOW_CASTER)
@@ -174,6 +180,11 @@ void relief_uv(inout vec4 uv) {
         fall * range.x * range.x / depth);
     int steps = relief_steps(search.y, down);
     int refinements = int(search.z);
+#ifndef RELIEF_CONES
+    int fewer = max(relief_steps_of_texels(steps, ray), 1);
+    refinements += int(ceil(log2(float(max(steps, 1)) / float(fewer))));  // as exact as with all
+    steps = min(steps, fewer);
+#endif
 #ifdef RELIEF_ONLY_HOLES
     refinements = 0;
 #ifdef RELIEF_CURVED
@@ -273,7 +284,8 @@ float relief_light(ReliefFrame frame, vec4 search, vec3 to_light) {
     vec4 travel = relief_travel(frame, length * (to_light - up * frame.normal));
     ReliefRay ray = relief_light_ray(
         map_coordinates(kReliefSlot, relief_found_uv), map_gradient(kReliefSlot, travel), limited, fall, length, relief);
-    float steps = 0.5 * float(relief_steps(search.y, limited)) * relief_found;  // an edge may be late
+    int most = relief_steps_of_texels(relief_steps(search.y, limited), ray);
+    float steps = 0.5 * float(most) * relief_found;  // an edge may be late
     bool lit = up > 0.0 && relief_found > kReliefShadowThreshold;
     float visible = relief_visibility(ray, relief_found, lit ? int(steps) + 2 : 0, kReliefIsClosed);
     return up >= 0.0 ? visible : 0.0;
