@@ -320,4 +320,46 @@ TEST_CASE_FIXTURE(
     CHECK(distance(ShadingRate::Pixel) == 0);
 }
 
+TEST_CASE_FIXTURE(
+    BumpScene, "bump strategy: the nearest lamp and the largest object of a mesh decide"
+                   * technique("bump.strategy")) {
+    Material m = matte({0, 0, 1}, BumpShadow::None);
+    m.specular = {0.5f, 0.5f, 0.5f};
+    m.normal_texture = map_of({tilted(-20), tilted(20)}, 2);
+    // Edges of 0.2 and 0.28 m, on average below kCoarseEdge of a lamp 1 m away.
+    world.find<MeshInstance>(surface)->mesh = add(make_floor(10));
+    const auto with = [&](ShadingRate rate) {
+        world.insert_resource(Rendering{.lights = LightMethod::ObjectMajor, .shading = rate});
+        auto& assets = world.resource<Assets>();
+        assets.materials[material.index] = m;
+        ++assets.material_version;
+        return radiance(look({0, 0, 2}, {0, 0, 0}, 32, 32));
+    };
+    const auto is_drawn = [&](ShadingRate expected, ShadingRate other) {
+        const gpu::FloatImage found = with(ShadingRate::BumpAuto);
+        CHECK(largest_difference(found, with(expected)) == 0);
+        CHECK(largest_difference(found, with(other)) > 0);
+    };
+    const Entity lamp = shine(PointLight{.intensity = 2, .radius = 0}, at({0.3f, 0.2f, 1.1f}));
+    is_drawn(ShadingRate::BumpVertex, ShadingRate::Pixel);
+    *world.find<WorldTransform>(lamp) = {at({0.3f, 0.2f, 0.7f})};
+    is_drawn(ShadingRate::Pixel, ShadingRate::BumpVertex);
+    *world.find<WorldTransform>(lamp) = {at({0.3f, 0.2f, 1.1f})};
+    is_drawn(ShadingRate::BumpVertex, ShadingRate::Pixel);
+
+    // One that does not reach it counts for nothing.
+    const Entity weak = shine(PointLight{.intensity = 2, .radius = 0.2f}, at({0.3f, 0.2f, 0.3f}));
+    is_drawn(ShadingRate::BumpVertex, ShadingRate::Pixel);
+    world.get<PointLight>(weak).radius = 0.4f;
+    is_drawn(ShadingRate::Pixel, ShadingRate::BumpVertex);
+    world.destroy(weak);
+
+    // A second object of the mesh, of thrice the size, has edges of 0.7 m.
+    const MeshId mesh = world.find<MeshInstance>(surface)->mesh;
+    const Entity large = place(mesh, material, affine_from({0, 0, -0.1f}, {1, 0, 0, 0}, Vec3(3)));
+    is_drawn(ShadingRate::Pixel, ShadingRate::BumpVertex);
+    world.destroy(large);
+    is_drawn(ShadingRate::BumpVertex, ShadingRate::Pixel);
+}
+
 }  // namespace limn::test::bump_shadow_test

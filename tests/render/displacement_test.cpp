@@ -8,6 +8,7 @@
 #include "render/material/relief_hook.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/support.h"
 #include "tests/technique.h"
 
 #include <algorithm>
@@ -163,6 +164,18 @@ std::pair<double, double> errors_of(const gpu::FloatImage& depth, const RenderVi
     REQUIRE(count > 100);
     return {largest, sum / count};
 }
+
+/// While it lives the shared device has no textures in tessellation stages.
+struct NoTessellation {
+    // The device itself is not const.
+    gpu::DeviceCaps& caps = const_cast<gpu::DeviceCaps&>(RenderTest::device().caps());
+    int found = std::exchange(caps.max_evaluation_textures, 0);
+
+    NoTessellation() = default;
+    NoTessellation(const NoTessellation&) = delete;
+    NoTessellation& operator=(const NoTessellation&) = delete;
+    ~NoTessellation() { caps.max_evaluation_textures = found; }
+};
 
 }  // namespace
 
@@ -336,6 +349,34 @@ TEST_CASE(
     caps.max_evaluation_textures = 16;
     CHECK(gpu::check_requirements(caps, {.evaluation_textures = 1}).empty());
     CHECK(supported_detail(SurfaceDetail::Displaced, caps) == SurfaceDetail::Displaced);
+}
+
+TEST_CASE_FIXTURE(
+    Scene,
+    "displacement: without tessellation the image is that of silhouettes, and one warning says so"
+        * technique("tex.displacement")) {
+    const RenderView view = look({2.2f, 0.6f, 1.2f}, {0, 0, 0}, kSize, kSize);
+    const auto depth_of = [&](SurfaceDetail detail) {
+        world.clear();
+        world.insert_resource(Assets{});
+        Material carved = displaced(add(waves(true)), 0.3f);
+        carved.detail = detail;
+        place(add(make_ball(24)), add(carved), at({0, 0, 0}));
+        carved.base_color = {1, 0, 0, 1};
+        place(add(make_grid(2)), add(carved), at({0, 0, -1}));
+        return aov(view, "depth");
+    };
+    const gpu::FloatImage silhouette = depth_of(SurfaceDetail::Silhouette);
+    CHECK(largest_difference(depth_of(SurfaceDetail::Displaced), silhouette) > 0.05f);
+    const NoTessellation none;
+    std::size_t warnings = 0;
+    gpu::FloatImage found;
+    for (const std::string& message :
+         messages_of([&] { found = depth_of(SurfaceDetail::Displaced); })) {
+        warnings += message.find("no tessellation") != std::string::npos ? 1 : 0;
+    }
+    CHECK(largest_difference(found, silhouette) == 0);
+    CHECK(warnings == 1);
 }
 
 }  // namespace limn::test::displacement_test

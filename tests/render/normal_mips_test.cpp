@@ -8,6 +8,8 @@
 #include "tests/technique.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -59,6 +61,33 @@ Vec3 decoded_normal(const Vec4& texel) {
 Vec3 decoded_spread(const std::vector<std::uint8_t>& bytes, std::size_t at) {
     const Vec3 texel = Vec3(bytes[4 * at], bytes[4 * at + 1], bytes[4 * at + 2]) / 255.0f;
     return {texel.x * texel.x, texel.y * texel.y, (2 * texel.z - 1) * texel.x * texel.y};
+}
+
+/// Of the normals and slopes of a rectangle of an image of floats.
+struct BumpMeans {
+    DVec3 normal = DVec3(0);
+    glm::dvec2 slope = {0, 0};
+    DVec3 square = DVec3(0);  ///< about the mean slope
+};
+
+BumpMeans means_of(
+    const ImageData& image, std::size_t left, std::size_t top, std::size_t columns,
+    std::size_t rows) {
+    BumpMeans means;
+    const double share = 1.0 / static_cast<double>(columns * rows);
+    for (std::size_t y = top; y < top + rows; ++y) {
+        for (std::size_t x = left; x < left + columns; ++x) {
+            const std::size_t at = y * static_cast<std::size_t>(image.width) + x;
+            const DVec3 n(decoded_normal(float_texel(image.pixels, at)));
+            const glm::dvec2 slope(n.x / n.z, n.y / n.z);
+            means.normal += share * n;
+            means.slope += share * slope;
+            means.square += share * DVec3(slope.x * slope.x, slope.y * slope.y, slope.x * slope.y);
+        }
+    }
+    const glm::dvec2 b = means.slope;
+    means.square -= DVec3(b.x * b.x, b.y * b.y, b.x * b.y);
+    return means;
 }
 
 /// A plane with so many bumps in a pixel that each sees the coarsest level of their map.
@@ -215,6 +244,84 @@ TEST_CASE(
         const Vec3 mean = decoded_normal(float_texel(levels[1].normals, texel));
         CHECK(mean.x / mean.z == near(x).scale(1).epsilon(1e-5));
         CHECK(mean.y / mean.z == near(y).scale(1).epsilon(1e-5));
+    }
+}
+
+TEST_CASE(
+    "normal mips: a texel of any level has the means over the texels of the image that it covers"
+    * technique("bump.mipmap")) {
+    constexpr std::size_t kWidth = 16;
+    const ImageData image = random_bumps(kWidth, 8);
+    for (const NormalMips mips : kAllMips) {
+        const auto levels = make_normal_levels(image, mips);
+        REQUIRE(levels.size() == 5);  // the last two are of 2x1 and 1x1 texels
+        for (std::size_t level = 1; level < levels.size(); ++level) {
+            const std::size_t columns = std::size_t{1} << level;
+            const std::size_t rows = std::min<std::size_t>(columns, 8);
+            for (std::size_t texel = 0; texel < kWidth * 8 / (columns * rows); ++texel) {
+                const std::size_t x = texel % (kWidth / columns) * columns;
+                const std::size_t y = texel / (kWidth / columns) * rows;
+                const BumpMeans means = means_of(image, x, y, columns, rows);
+                const Vec3 found = decoded_normal(float_texel(levels[level].normals, texel));
+                const DVec3 expected = mips == NormalMips::Lean
+                                           ? DVec3(means.slope.x, means.slope.y, 1)
+                                           : means.normal;
+                CHECK(glm::distance(DVec3(found), glm::normalize(expected)) < 1e-5);
+                if (mips == NormalMips::Plain) {
+                    continue;
+                }
+                const double length = glm::length(means.normal);
+                const DVec3 variances =
+                    mips == NormalMips::Lean ? means.square : DVec3((1 - length) / length);
+                const Vec3 spread = decoded_spread(levels[level].spread, texel);
+                CHECK(std::abs(std::sqrt(spread.x) - std::sqrt(variances.x)) < 0.51 / 255);
+                CHECK(std::abs(std::sqrt(spread.y) - std::sqrt(variances.y)) < 0.51 / 255);
+            }
+        }
+    }
+}
+
+TEST_CASE(
+    "normal mips: bytes, halves and floats of one image have the same levels, and keep its alpha"
+    * technique("bump.mipmap")) {
+    // Bytes, and the same normals as halves and floats.
+    ImageData bytes = image_of_bytes(4, 2, {});
+    ImageData halves = {
+        .name = "halves", .width = 4, .height = 2, .format = PixelFormat::Rgba16F, .pixels = {}};
+    ImageData floats = halves;
+    floats.format = PixelFormat::Rgba32F;
+    std::mt19937 random(11);
+    const auto append = [](ImageData& image, const auto& value) {
+        const auto* raw = reinterpret_cast<const std::uint8_t*>(&value);
+        image.pixels.insert(image.pixels.end(), raw, raw + sizeof value);
+    };
+    for (int i = 0; i < 4 * 2 * 4; ++i) {
+        const int byte = 96 + static_cast<int>(random() % 64) + (i % 4 == 2 ? 80 : 0);
+        bytes.pixels.push_back(static_cast<std::uint8_t>(byte));
+        append(halves, glm::packHalf1x16(static_cast<float>(byte) / 255));
+        append(floats, static_cast<float>(byte) / 255);
+    }
+    for (const NormalMips mips : kAllMips) {
+        const auto of_bytes = make_normal_levels(bytes, mips);
+        const auto of_halves = make_normal_levels(halves, mips);
+        const auto of_floats = make_normal_levels(floats, mips);
+        REQUIRE(of_bytes.size() == 3);
+        for (std::size_t level = 1; level < 3; ++level) {
+            const std::size_t values = of_bytes[level].normals.size();
+            REQUIRE(of_halves[level].normals.size() == 2 * values);
+            REQUIRE(of_floats[level].normals.size() == 4 * values);
+            for (std::size_t i = 0; i < values; ++i) {
+                std::uint16_t half = 0;
+                float value = 0;
+                std::memcpy(&half, of_halves[level].normals.data() + 2 * i, sizeof half);
+                std::memcpy(&value, of_floats[level].normals.data() + 4 * i, sizeof value);
+                CHECK(std::abs(glm::unpackHalf1x16(half) - value) < 1.5e-3f);
+                CHECK(std::abs(of_bytes[level].normals[i] / 255.0f - value) < 0.51f / 255);
+            }
+        }
+        const auto alpha = [&](std::size_t i) { return bytes.pixels[4 * i + 3] / 255.0; };
+        const double mean = (alpha(0) + alpha(1) + alpha(4) + alpha(5)) / 4;
+        CHECK(float_texel(of_floats[1].normals, 0).w == near(mean).epsilon(1e-6));
     }
 }
 
