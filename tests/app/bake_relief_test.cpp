@@ -225,6 +225,24 @@ TEST_CASE(
     CHECK(model->images.size() == 2);
 }
 
+TEST_CASE("bake: detail with relief writes a low mesh around the high one, displaced to it") {
+    const TemporaryFolder folder;
+    write_mesh(folder.file("low.glb"), make_sphere({.radius = 1, .segments = 16, .rings = 8}));
+    write_mesh(folder.file("high.glb"), make_sphere({.radius = 1, .segments = 128, .rings = 64}));
+    check_ok(bake(
+        folder, {"detail", "low.glb", "--high", "high.glb", "-o", "ball.png", "--set", "size=64",
+                 "--set", "rays=0", "--set", "distance=0.05", "--set", "relief=true"}));
+    const auto model = load_gltf(folder.file("ball.glb"));
+    REQUIRE_MESSAGE(model.ok(), (model ? std::string() : model.error().message));
+    const Material& material = model->materials.at(0);
+    CHECK(material.detail == SurfaceDetail::Displaced);
+    CHECK(material.relief_texture.image.index != kNoAsset);
+    // The middle of a face is 2 to 4 % of the radius below the ball: the mesh is moved out by that.
+    CHECK(material.relief_depth > 0.02f);
+    CHECK(material.relief_depth < 0.08f);
+    CHECK(model->meshes[0].bounds.max.y > 1.015f);
+}
+
 TEST_CASE("bake: the same command writes the same maps") {
     const TemporaryFolder folder;
     write_mesh(folder.file("torus.glb"), make_torus({}));

@@ -91,7 +91,9 @@ ImageData image_of_map(const BakedMap& map, std::string name) {
 
 void add_relief(const DetailRelief& relief, const std::string& name, GltfScene& scene) {
     Material& material = scene.materials.front();
-    material.detail = SurfaceDetail::Silhouette;
+    // A search below the quadric of a vertex misses what is beyond a crease of the mesh: at the
+    // outline of a nose there would be holes. Steps are for devices without tessellation.
+    material.detail = SurfaceDetail::Displaced;
     material.relief_depth = relief.depth;
     material.relief_steps = 40;
     material.relief_shadow = ReliefShadow::Ray;
