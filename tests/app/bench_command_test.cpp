@@ -29,7 +29,17 @@ TEST_CASE("bench_command: --only is refused for scenes without parts") {
     options.only = "draw";
     const Status part = check_bench_options(options);
     REQUIRE(!part);
-    CHECK(part.error().message.find("--only is for `particles` and `faces`") != std::string::npos);
+    CHECK(
+        part.error().message.find("--only is for `particles`, `faces` and `characters`")
+        != std::string::npos);
+    options.only = "skin";
+    options.scene = "characters";
+    CHECK(check_bench_options(options));
+    options.svg = "a.svg";
+    const Status plot = check_bench_options(options);
+    REQUIRE(!plot);
+    CHECK(plot.error().message.find("--svg is for `particles` and `faces`") != std::string::npos);
+    options.svg.clear();
     options.only.clear();
     options.scene = "faces";
     options.most = 2000;

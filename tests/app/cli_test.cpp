@@ -98,6 +98,7 @@ TEST_CASE("cli: wrong usage exits with 2 and one line that names the mistake") {
     check_fails(folder, {"bench", "gallery", "--frames", "0"}, 2, "--frames");
     check_fails(folder, {"bench", "particles", "--only", "draft"}, 2, "draw");
     check_fails(folder, {"bench", "faces", "--only", "draft"}, 2, "pixels");
+    check_fails(folder, {"bench", "characters", "--only", "draft"}, 2, "chain");
     check_fails(folder, {"bench", "gallery", "--only", "draw"}, 2, "particles");
     check_fails(folder, {"quality", "--what"}, 2, "--what");
     check_fails(folder, {"hash", "gallery"}, 2, "--frames");

@@ -36,13 +36,14 @@ constexpr int kHeapFrames = 600;   ///< last ones, whose minimum of heap memory 
 constexpr int kHeapInterval = 60;  ///< frames between heap measurements
 constexpr const char* kParticlesName = "particles";  ///< likewise: particle pools, without a scene
 constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
+constexpr const char* kCharactersName = "characters";  ///< likewise: poses of crowds
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
 constexpr const char* kSurfacesName = "surfaces";    ///< not a scene: kinds of surface detail
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
 /// Whether another program runs this benchmark.
 bool is_program(const std::string& scene) {
-    return scene == kParticlesName || scene == kFacesName;
+    return scene == kParticlesName || scene == kFacesName || scene == kCharactersName;
 }
 
 double ms_between(SteadyClock::time_point begin, SteadyClock::time_point end) {
@@ -207,14 +208,15 @@ Status check_bench_options(const BenchOptions& options) {
     if (options.most > 0 && options.scene != kParticlesName) {
         return fail("--most is for `particles`, found `{}`", options.scene);
     }
+    if (!options.svg.empty() && options.scene != kParticlesName && options.scene != kFacesName) {
+        return fail("--svg is for `particles` and `faces`, found `{}`", options.scene);
+    }
     if (is_program(options.scene)) {
         return Done{};
     }
-    for (const auto& [option, value] :
-         {std::pair{"--svg", options.svg}, {"--only", options.only}}) {
-        if (!value.empty()) {
-            return fail("{} is for `particles` and `faces`, found `{}`", option, options.scene);
-        }
+    if (!options.only.empty()) {
+        return fail(
+            "--only is for `particles`, `faces` and `characters`, found `{}`", options.scene);
     }
     return Done{};
 }

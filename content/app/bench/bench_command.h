@@ -30,12 +30,12 @@ struct BenchOptions {
     std::string json;      ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;       ///< the same
     std::string svg;       ///< file, of `particles` and `faces`; empty = none
-    std::string only;      ///< one part of `particles` or `faces`; empty = all
+    std::string only;      ///< one part of `particles`, `faces` or `characters`; empty = all
     std::size_t most = 0;  ///< particles at the last point of the curves; 0 = the program's default
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
 };
 
-/// Arguments of the program that measures `particles` or `faces`.
+/// Arguments of the program that measures `particles`, `faces` or `characters`.
 [[nodiscard]] std::vector<std::string> bench_program_arguments(const BenchOptions& options);
 
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the

@@ -171,7 +171,8 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option(
            "--svg", options.svg, "`particles` and `faces` only: plot the cost over their number")
         ->type_name("FILE");
-    app->add_option("--only", options.only, "`particles` and `faces` only: measure one part")
+    app->add_option(
+           "--only", options.only, "`particles`, `faces`, `characters` only: measure one part")
         ->type_name("PART");
     add_integer(
         *app, "--most",
@@ -238,6 +239,14 @@ JSON: {"threads", "rows": [{"name", "ours_ms", "reference_ms", "against", "ratio
 "growth": [{"curve", "faces", "ns"}]}
 CSV: name,ours_ms,reference_ms,against,ratio,limit,met and, after an empty line, curve,faces,ns
 
+`limn bench characters` poses crowds of up to 10,000 characters next to plain scalar loops and a copy
+of what they write: sampling of compressed clips, blending, joint matrices, skins. Each runs 9 to
+--frames times, in turns, and the best counts. "ratio" is ours / reference, "limit" its gate, "peer" that
+of the best other library where it was measured. --only measures one part.
+JSON: {"threads", "vector_floats", "rows": [{"gate", "name", "ours", "reference", "against", "unit",
+"ratio", "limit", "stretch", "peer", "met"}], "notes"}
+CSV: gate,name,ours,reference,against,unit,ratio,limit,stretch,peer,met
+
 Examples:
   limn bench lights --size 640x360
   limn bench lens --size 640x360 --frames 100
@@ -247,7 +256,8 @@ Examples:
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg
   limn bench particles --only growth --most 100000
-  limn bench faces --csv faces.csv --svg faces.svg)");
+  limn bench faces --csv faces.csv --svg faces.svg
+  limn bench characters --only chain)");
     return {app, [&options] { return run_bench(options); }};
 }
 

@@ -1,0 +1,20 @@
+#include "bench/characters/character_rows.h"
+
+namespace limn::bench {
+
+void add_clip_rows(CharacterBench& bench);
+void add_chain_rows(CharacterBench& bench);
+void add_vertex_rows(CharacterBench& bench);
+void add_memory_rows(CharacterBench& bench);
+
+std::span<const CharacterPart> character_parts() {
+    static constexpr CharacterPart kParts[] = {
+        {"clips", add_clip_rows},       // 1 .. 5: sampling, blending, joint matrices
+        {"chain", add_chain_rows},      // 6 .. 8: all of it in one pass
+        {"vertices", add_vertex_rows},  // 9
+        {"memory", add_memory_rows},    // 20, 21
+    };
+    return kParts;
+}
+
+}  // namespace limn::bench
