@@ -6,6 +6,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
 #include "systems/animation/clip_player_system.h"
+#include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
 #include "systems/animation/pose_system.h"
@@ -77,6 +78,7 @@ void add_object_systems(SystemList& systems) {
 
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
+    systems.add<add_crowd_poses>(Create, Both);
     systems.add<add_skin_pulls>(Create, Both);
     systems.add<add_deformer_states>(Create, Both);
     systems.add<release_surface_bindings>(Create, Both);
@@ -88,6 +90,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
+    systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);
@@ -146,6 +149,7 @@ void add_camera_systems(SystemList& systems) {
     systems.add<update_orbit_cameras>(View, Both);
     systems.add<update_autofocus>(View, Both);  // after everything that moves cameras
     systems.add<adjust_lenses>(View);
+    systems.add<choose_pose_rates>(View, Both);    // likewise, for the next step
     systems.add<choose_mesh_levels>(View, Both);   // after everything that moves cameras
     systems.add<update_relief_boxes>(View, Both);  // likewise
 }
@@ -177,6 +181,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<WeatherState>(world);
     resource_or_default<ParticleObstacles>(world);
     resource_or_default<StepJumps>(world);
+    resource_or_default<CrowdLibrary>(world);
     return resource_or_default<FrameTime>(world);
 }
 

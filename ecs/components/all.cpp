@@ -8,6 +8,7 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/crowd_pose.h"
 #include "ecs/components/curvature_view.h"
 #include "ecs/components/dazzle.h"
 #include "ecs/components/deformers.h"
@@ -126,6 +127,8 @@ void register_all_components() {
     register_component<Skeleton>();
     register_component<ClipPlayer>();
     register_component<Pose>();
+    register_component<CrowdPose>();
+    register_component<CrowdPoseState>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

@@ -144,6 +144,16 @@ void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<fl
         rows.each_value(sheet.scales, sheet.scaling.size(), [&](std::size_t i, const Vec3& value) {
             pose.scales[sheet.scaling[i]] = value;
         });
+    }
+    sample_clip_weights(clip, time, weights);
+}
+
+void sample_clip_weights(const ClipData& clip, float time, std::span<float> weights) {
+    for (const ClipSheet& sheet : clip.sheets) {
+        if (sheet.morphing.empty()) {
+            continue;
+        }
+        const SheetRows rows(sheet, time);
         rows.each_value(sheet.weights, sheet.morphing.size(), [&](std::size_t i, float value) {
             weights[sheet.morphing[i]] = value;
         });

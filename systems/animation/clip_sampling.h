@@ -28,6 +28,9 @@ struct KeyInterval {
 /// `weights` must have all joints and weights of the clip. Rotations are normalized.
 void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<float> weights);
 
+/// The same for its morph weights only.
+void sample_clip_weights(const ClipData& clip, float time, std::span<float> weights);
+
 /// Weight below which a morph animation is ignored.
 inline constexpr float kMinMorphWeight = 1e-4f;
 

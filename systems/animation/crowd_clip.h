@@ -25,6 +25,11 @@ namespace limn {
 // After N. Frechette, "Animation Compression: Table of Contents" (2016).
 // Techniques: char.clip-layout
 
+/// Length of a row of joints in vectors of at least four.
+[[nodiscard]] constexpr std::size_t pose_stride(std::size_t joints) {
+    return (joints + 3) / 4 * 4;
+}
+
 /// Joints processed together.
 inline constexpr std::size_t kPoseBlock = 16;
 /// Characters processed together, in the lanes of vectors.
@@ -43,13 +48,16 @@ struct CrowdTracks {
     std::vector<std::uint32_t> block_runs;  ///< first run of each block, and one past the last
     std::size_t animated = 0;               ///< tracks in frames
     std::vector<std::uint16_t> frames;      ///< each: three rows of all tracks; then padding
-    std::vector<float> constants;  ///< a row for each component, x y z w or x y z, of all joints,
-                                   ///< then padding; empty if all are animated
+    std::vector<float> constants;  ///< rows as in PoseRows, then padding; empty if all are animated
     std::vector<float> ranges;     ///< of animated translations, six rows: smallest x y z [m], then
                                    ///< what one step of a word is [m]; then padding
 };
 
-/// A clip of one skeleton, without scale and morph weights.
+/// Smallest cosine between a quaternion and that of the next frame: between them the length is then
+/// so close to 1 that it needs no square root.
+inline constexpr float kMinFrameCosine = 0.9f;
+
+/// A clip of one skeleton, without scales and morph weights.
 struct CrowdClip {
     std::size_t joints = 0;
     std::size_t frames = 1;
@@ -71,7 +79,7 @@ struct CrowdClipLimits {
 [[nodiscard]] CrowdClipLimits scale_limits(const SkeletonData& skeleton);
 
 /// The fewest frames whose error is within the limits. Fails for a clip that is not for this
-/// skeleton, has morph weights or moving scales, or jumps.
+/// skeleton, has moving scales, or jumps. Morph weights are left out.
 [[nodiscard]] Result<CrowdClip>
 make_crowd_clip(const SkeletonData& skeleton, const ClipData& clip, const CrowdClipLimits& limits);
 

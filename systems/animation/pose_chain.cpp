@@ -22,6 +22,13 @@ static_assert(sizeof(Affine) == 12 * sizeof(float));
 
 /// Squared length of an unpacked quaternion.
 inline constexpr float kPackedLength2 = 2.0f * kPackedMax * kPackedMax;
+/// sqrt(1 / kPackedLength2).
+inline constexpr float kPackedUnit = 0.70710678f / kPackedMax;
+// 1 / sqrt(1 - e) = 1 + e / 2 + 3 e^2 / 8 + 5 e^3 / 16 + 35 e^4 / 128, error 8e-8 for e = 0.05,
+// which is what halfway between frames is left of a squared length of 1 (kMinFrameCosine).
+inline constexpr float kInverseRoot[] = {
+    kPackedUnit, kPackedUnit * 0.5f, kPackedUnit * 0.375f, kPackedUnit * 0.3125f,
+    kPackedUnit * 0.2734375f};
 
 /// Two neighboring frames.
 struct FramePair {
@@ -42,15 +49,15 @@ inline FramePair find_frames(const CrowdClip& clip, float time) {
 }
 
 inline void copy_all_constants(const CrowdClip& clip, PoseRows& rows) {
-    for (std::size_t row = 0; row < PoseRows::kRows; ++row) {
-        const CrowdTracks& tracks = row < 4 ? clip.rotations : clip.translations;
-        if (!tracks.constants.empty()) {
+    const auto copy = [&rows](const std::vector<float>& constants, std::size_t first) {
+        if (!constants.empty()) {
             std::memcpy(
-                rows.values.data() + row * rows.stride,
-                tracks.constants.data() + (row < 4 ? row : row - 4) * clip.joints,
-                clip.joints * sizeof(float));
+                rows.values.data() + first * rows.stride, constants.data(),
+                (constants.size() - kPoseBlock) * sizeof(float));
         }
-    }
+    };
+    copy(clip.rotations.constants, 0);
+    copy(clip.translations.constants, 4);
 }
 
 /// A block of local transforms: rows of kPoseBlock joints.
@@ -93,6 +100,9 @@ bool pose_lanes(
 
 #else
 
+#undef LIMN_CROWD_LAMBDA  // once for each target
+#define LIMN_CROWD_LAMBDA HWY_ATTR __attribute__((always_inline))
+
 namespace hn = hwy::HWY_NAMESPACE;
 using CrowdFloats = hn::CappedTag<float, kPoseLanes>;
 using CrowdVector = hn::Vec<CrowdFloats>;
@@ -116,16 +126,32 @@ HWY_INLINE V mix(V a, V b, V u) {
     return hn::Add(a, hn::Mul(hn::Sub(b, a), u));
 }
 
-template <typename D, typename V = hn::Vec<D>>
-HWY_INLINE CrowdQuat<V> mix_and_normalize(D d, const CrowdQuat<V>& a, const CrowdQuat<V>& b, V u) {
-    const V x = mix(a.x, b.x, u);
-    const V y = mix(a.y, b.y, u);
-    const V z = mix(a.z, b.z, u);
-    const V w = mix(a.w, b.w, u);
-    const V length2 =
-        hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Add(hn::Mul(z, z), hn::Mul(w, w)));
-    const V unit = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2));
-    return {hn::Mul(x, unit), hn::Mul(y, unit), hn::Mul(z, unit), hn::Mul(w, unit)};
+template <typename V>
+HWY_INLINE CrowdQuat<V> mix(const CrowdQuat<V>& a, const CrowdQuat<V>& b, V u) {
+    return {mix(a.x, b.x, u), mix(a.y, b.y, u), mix(a.z, b.z, u), mix(a.w, b.w, u)};
+}
+
+template <typename V>
+HWY_INLINE V dot(const CrowdQuat<V>& a, const CrowdQuat<V>& b) {
+    return hn::Add(
+        hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)),
+        hn::Add(hn::Mul(a.z, b.z), hn::Mul(a.w, b.w)));
+}
+
+template <typename V>
+HWY_INLINE CrowdQuat<V> scale(const CrowdQuat<V>& q, V factor) {
+    return {hn::Mul(q.x, factor), hn::Mul(q.y, factor), hn::Mul(q.z, factor), hn::Mul(q.w, factor)};
+}
+
+/// Of a quaternion between two unpacked ones.
+template <typename D>
+HWY_INLINE hn::Vec<D> inverse_length(D d, hn::Vec<D> length2) {
+    const auto left =
+        hn::Sub(hn::Set(d, 1.0f), hn::Mul(length2, hn::Set(d, 1.0f / crowd::kPackedLength2)));
+    const auto next = [&](hn::Vec<D> sum, float coefficient)
+                          HWY_ATTR { return hn::Add(hn::Mul(sum, left), hn::Set(d, coefficient)); };
+    const auto& c = crowd::kInverseRoot;
+    return next(next(next(next(hn::Set(d, c[4]), c[3]), c[2]), c[1]), c[0]);
 }
 
 /// Rotations whose words are in rows of `width`.
@@ -195,15 +221,17 @@ HWY_INLINE void sample_rotations(
         const TrackRun run = tracks.runs[r];
         const std::uint16_t* const words = frame + run.track;
         float* const out = rows + (run.first - origin);
-        each_vector(kFloats, 0, run.count, [=](auto d, std::size_t i, std::size_t count) HWY_ATTR {
-            const auto q = mix_and_normalize(
-                d, unpack(d, words + i, width), unpack(d, words + next + i, width),
-                hn::Set(d, at.u));
-            store_first(d, q.x, count, out + i);
-            store_first(d, q.y, count, out + stride + i);
-            store_first(d, q.z, count, out + 2 * stride + i);
-            store_first(d, q.w, count, out + 3 * stride + i);
-        });
+        each_vector(
+            kFloats, 0, run.count, [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
+                const auto mixed =
+                    mix(unpack(d, words + i, width), unpack(d, words + next + i, width),
+                        hn::Set(d, at.u));
+                const auto q = scale(mixed, inverse_length(d, dot(mixed, mixed)));
+                store_first(d, q.x, count, out + i);
+                store_first(d, q.y, count, out + stride + i);
+                store_first(d, q.z, count, out + 2 * stride + i);
+                store_first(d, q.w, count, out + 3 * stride + i);
+            });
     }
 }
 
@@ -220,7 +248,8 @@ HWY_INLINE void sample_translations(
         float* out = rows + (run.first - origin);
         for (int axis = 0; axis < 3; ++axis) {
             each_vector(
-                kFloats, 0, run.count, [=](auto d, std::size_t i, std::size_t count) HWY_ATTR {
+                kFloats, 0, run.count,
+                [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
                     const hn::Rebind<std::uint16_t, decltype(d)> dh;
                     const hn::RebindToSigned<decltype(d)> di;
                     const auto from = hn::PromoteTo(di, hn::LoadU(dh, words + i));
@@ -248,7 +277,7 @@ HWY_INLINE void copy_constants(
         for (std::size_t i = 0; i < kPoseBlock; i += kWidth) {
             hn::StoreU(hn::LoadU(kFloats, from + i), kFloats, rows + i);
         }
-        from += joints;
+        from += pose_stride(joints);
         rows += kPoseBlock;
     }
 }
@@ -277,19 +306,17 @@ sample_block(const CrowdClip& clip, const crowd::FramePair& at, std::size_t bloc
 HWY_INLINE void blend_block(
     const float* a, const float* b, std::size_t size, std::size_t stride, float weight,
     float* out) {
-    const auto blend = [&](auto d, std::size_t i, std::size_t count) HWY_ATTR {
+    const auto blend = [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
         using V = hn::Vec<decltype(d)>;
         const V u = hn::Set(d, weight);
         const auto load = [&](const float* rows, std::size_t row)
                               HWY_ATTR { return hn::LoadU(d, rows + row * stride + i); };
         const CrowdQuat<V> p = {load(a, 0), load(a, 1), load(a, 2), load(a, 3)};
         CrowdQuat<V> q = {load(b, 0), load(b, 1), load(b, 2), load(b, 3)};
-        const V dot = hn::Add(
-            hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)),
-            hn::Add(hn::Mul(p.z, q.z), hn::Mul(p.w, q.w)));
-        const V sign = hn::And(dot, hn::Set(d, -0.0f));
+        const V sign = hn::And(dot(p, q), hn::Set(d, -0.0f));
         q = {hn::Xor(q.x, sign), hn::Xor(q.y, sign), hn::Xor(q.z, sign), hn::Xor(q.w, sign)};
-        const CrowdQuat<V> mixed = mix_and_normalize(d, p, q, u);
+        const CrowdQuat<V> sum = mix(p, q, u);
+        const CrowdQuat<V> mixed = scale(sum, hn::Div(hn::Set(d, 1.0f), hn::Sqrt(dot(sum, sum))));
         store_first(d, mixed.x, count, out + i);
         store_first(d, mixed.y, count, out + stride + i);
         store_first(d, mixed.z, count, out + 2 * stride + i);
@@ -323,23 +350,39 @@ struct CrowdRow {
     CrowdVector w;
 };
 
-/// Blocks b of three vectors, one after another, go to to[4 b] + offset.
+/// Pairs of blocks of `even` go to to[8 b] + offset, those of `odd` to to[8 b + 4], blocks of
+/// `last` after each.
 template <typename D>
-HWY_INLINE void
-store_blocks(D d, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c, float* const* to, std::size_t offset) {
-    if constexpr (hn::MaxLanes(D()) <= 4) {
-        float* const first = *to + offset;
-        hn::StoreU(a, d, first);
-        hn::StoreU(b, d, first + 4);
-        hn::StoreU(c, d, first + 8);
+HWY_INLINE void store_pairs(
+    D d, hn::Vec<D> even, hn::Vec<D> odd, hn::Vec<D> last, float* const* to, std::size_t offset) {
+    const hn::Half<D> half;
+    if constexpr (hn::MaxLanes(D()) == 8) {
+        hn::StoreU(even, d, to[0] + offset);
+        hn::StoreU(hn::LowerHalf(half, last), half, to[0] + offset + 8);
+        hn::StoreU(odd, d, to[4] + offset);
+        hn::StoreU(hn::UpperHalf(half, last), half, to[4] + offset + 8);
     } else {
-        const hn::Half<D> half;
-        store_blocks(
-            half, hn::LowerHalf(half, a), hn::LowerHalf(half, b), hn::LowerHalf(half, c), to,
-            offset);
-        store_blocks(
-            half, hn::UpperHalf(half, a), hn::UpperHalf(half, b), hn::UpperHalf(half, c),
-            to + hn::MaxLanes(half), offset);
+        store_pairs(
+            half, hn::LowerHalf(half, even), hn::LowerHalf(half, odd), hn::LowerHalf(half, last),
+            to, offset);
+        store_pairs(
+            half, hn::UpperHalf(half, even), hn::UpperHalf(half, odd), hn::UpperHalf(half, last),
+            to + 8, offset);
+    }
+}
+
+/// Blocks b of three vectors, one after another, go to to[4 b] + offset.
+HWY_INLINE void
+store_blocks(CrowdVector a, CrowdVector b, CrowdVector c, float* const* to, std::size_t offset) {
+    if constexpr (kWidth <= 4) {
+        float* const first = *to + offset;
+        hn::StoreU(a, kFloats, first);
+        hn::StoreU(b, kFloats, first + 4);
+        hn::StoreU(c, kFloats, first + 8);
+    } else {
+        store_pairs(
+            kFloats, hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a),
+            hn::OddEvenBlocks(b, hn::SwapAdjacentBlocks(a)), c, to, offset);
     }
 }
 
@@ -455,10 +498,10 @@ HWY_INLINE void finish_joint(
     row0 = transpose(row0);
     row1 = transpose(row1);
     row2 = transpose(row2);
-    store_blocks(kFloats, row0.x, row1.x, row2.x, joints, 12 * joint);
-    store_blocks(kFloats, row0.y, row1.y, row2.y, joints + 1, 12 * joint);
-    store_blocks(kFloats, row0.z, row1.z, row2.z, joints + 2, 12 * joint);
-    store_blocks(kFloats, row0.w, row1.w, row2.w, joints + 3, 12 * joint);
+    store_blocks(row0.x, row1.x, row2.x, joints, 12 * joint);
+    store_blocks(row0.y, row1.y, row2.y, joints + 1, 12 * joint);
+    store_blocks(row0.z, row1.z, row2.z, joints + 2, 12 * joint);
+    store_blocks(row0.w, row1.w, row2.w, joints + 3, 12 * joint);
 }
 
 /// Joints begin .. end, whose rows begin with `begin`, of all characters.
@@ -572,10 +615,25 @@ float mix(float a, float b, float u) {
     return a + (b - a) * u;
 }
 
-Quat mix_and_normalize(const Quat& a, const Quat& b, float u) {
-    const Quat q(mix(a.w, b.w, u), mix(a.x, b.x, u), mix(a.y, b.y, u), mix(a.z, b.z, u));
-    const float unit = 1.0f / std::sqrt((q.x * q.x + q.y * q.y) + (q.z * q.z + q.w * q.w));
-    return {q.w * unit, q.x * unit, q.y * unit, q.z * unit};
+Quat mix(const Quat& a, const Quat& b, float u) {
+    return {mix(a.w, b.w, u), mix(a.x, b.x, u), mix(a.y, b.y, u), mix(a.z, b.z, u)};
+}
+
+float dot(const Quat& a, const Quat& b) {
+    return (a.x * b.x + a.y * b.y) + (a.z * b.z + a.w * b.w);
+}
+
+Quat scale(const Quat& q, float factor) {
+    return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
+}
+
+float inverse_length(float length2) {
+    const float left = 1.0f - length2 * (1.0f / crowd::kPackedLength2);
+    float sum = crowd::kInverseRoot[4];
+    for (std::size_t i = 4; i-- > 0;) {
+        sum = sum * left + crowd::kInverseRoot[i];
+    }
+    return sum;
 }
 
 void put(PoseRows& rows, std::size_t joint, const Quat& q) {
@@ -688,9 +746,9 @@ void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows)
     for (const TrackRun& run : turns.runs) {
         for (std::size_t i = 0; i < run.count; ++i) {
             const std::size_t column = run.track + i;
-            put(rows, run.first + i,
-                mix_and_normalize(
-                    packed(at.first, column), packed(at.first + at.step, column), at.u));
+            const Quat mixed =
+                mix(packed(at.first, column), packed(at.first + at.step, column), at.u);
+            put(rows, run.first + i, scale(mixed, inverse_length(dot(mixed, mixed))));
         }
     }
     const CrowdTracks& moves = clip.translations;
@@ -721,10 +779,11 @@ void blend_poses_scalar(const PoseRows& a, const PoseRows& b, float weight, Pose
     for (std::size_t j = 0; j < a.joints; ++j) {
         const Quat p = a.rotation(j);
         const Quat q = b.rotation(j);
-        const bool flips = std::signbit((p.x * q.x + p.y * q.y) + (p.z * q.z + p.w * q.w));
+        const bool flips = std::signbit(dot(p, q));
+        const Quat sum = mix(p, flips ? scale(q, -1.0f) : q, weight);
         const Vec3 from = a.translation(j);
         const Vec3 to = b.translation(j);
-        put(out, j, mix_and_normalize(p, flips ? Quat(-q.w, -q.x, -q.y, -q.z) : q, weight));
+        put(out, j, scale(sum, 1.0f / std::sqrt(dot(sum, sum))));
         for (int axis = 0; axis < 3; ++axis) {
             out.values[(4 + static_cast<std::size_t>(axis)) * out.stride + j] =
                 mix(from[axis], to[axis], weight);

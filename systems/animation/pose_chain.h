@@ -43,7 +43,7 @@ struct PoseRows {
 
     void resize(std::size_t count) {
         joints = count;
-        stride = (count + 3) / 4 * 4;
+        stride = pose_stride(count);
         values.resize(kRows * stride + kPoseBlock);  // vectors are read beyond the last joint
     }
     [[nodiscard]] Quat rotation(std::size_t joint) const {

@@ -4,6 +4,7 @@
 #include "ecs/components/placement.h"
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
+#include "systems/animation/crowd_pose_system.h"
 
 #include <algorithm>
 #include <map>
@@ -14,7 +15,8 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kPoseGrain = 16;  ///< characters per task; each takes some microseconds
+constexpr std::size_t kPoseGrain = 16;   ///< characters per task; each takes some microseconds
+constexpr std::size_t kCrowdGrain = 64;  ///< those of a crowd take less, and not all are due
 
 bool is_below(const std::vector<std::uint16_t>& numbers, std::size_t count) {
     return std::all_of(
@@ -123,12 +125,8 @@ void apply_jumps(
     }
 }
 
-/// Samples the clip of one character that has a Pose.
-void step_character(
-    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose& pose,
-    MorphWeights* morph) {
-    thread_local LocalPose scratch;  // reused between characters
-    const auto& [player, morph_player, is_cut, step] = playback;
+/// Makes the poses of the last step the previous ones. Returns whether there was none.
+bool begin_step(const SkeletonData& skeleton, Pose& pose, MorphWeights* morph) {
     const bool is_new = pose.joints.size() != skeleton.joints.size();
     if (is_new) {
         pose.joints.resize(skeleton.joints.size());
@@ -136,18 +134,21 @@ void step_character(
     }
     std::swap(pose.joints, pose.previous);
     pose.jumps.clear();
-    std::span<float> weights;
     if (morph != nullptr) {
         morph->previous = morph->weights;
         morph->jumps.clear();
-        weights = morph->weights;
     }
-    const ClipData* const clip =
-        player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
-    const float time = player != nullptr ? player->time : 0.0f;
-    evaluate_pose(skeleton, clip, time, scratch, pose.joints, weights);
-    if (morph_player != nullptr) {
-        add_morph_animations(*morph_player, assets.clips, weights);
+    return is_new;
+}
+
+/// After the joints were written.
+void finish_step(
+    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, bool is_new,
+    Pose& pose, MorphWeights* morph) {
+    if (playback.morph_player != nullptr) {
+        add_morph_animations(
+            *playback.morph_player, assets.clips,
+            morph != nullptr ? std::span<float>(morph->weights) : std::span<float>());
     }
     if (is_new) {
         pose.previous = pose.joints;
@@ -158,6 +159,152 @@ void step_character(
         apply_jumps(assets, skeleton, playback, &pose, morph);
     }
 }
+
+/// Samples the clip of one character that has a Pose.
+void step_character(
+    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose& pose,
+    MorphWeights* morph) {
+    thread_local LocalPose scratch;  // reused between characters
+    const bool is_new = begin_step(skeleton, pose, morph);
+    const ClipPlayer* const player = playback.player;
+    const ClipData* const clip =
+        player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
+    evaluate_pose(
+        skeleton, clip, player != nullptr ? player->time : 0.0f, scratch, pose.joints,
+        morph != nullptr ? std::span<float>(morph->weights) : std::span<float>());
+    finish_step(assets, skeleton, playback, is_new, pose, morph);
+}
+
+/// A character that keeps its pose in this step.
+void hold_character(Pose& pose, MorphWeights* morph) {
+    pose.previous = pose.joints;
+    pose.jumps.clear();
+    if (morph != nullptr) {
+        morph->previous = morph->weights;
+        morph->jumps.clear();
+    }
+}
+
+/// The characters of a chunk; spans of what they do not have are empty.
+struct CharacterSpans {
+    std::span<const Entity> entities;
+    std::span<const Skeleton> skeletons;
+    std::span<const ClipPlayer> players;
+    std::span<const MorphPlayer> morph_players;
+    std::span<const CrowdPose> crowds;
+    std::span<const CrowdPoseState> crowd_states;
+    std::span<MorphWeights> morphs;
+    std::span<Pose> poses;
+
+    [[nodiscard]] MorphWeights* morph(std::size_t i) const {
+        return morphs.empty() ? nullptr : &morphs[i];
+    }
+    [[nodiscard]] Playback playback(std::size_t i, const Cuts& cuts, float step) const {
+        return {
+            players.empty() ? nullptr : &players[i],
+            morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]), step};
+    }
+};
+
+/// Poses characters of crowds: those of one skeleton that are due together.
+class CrowdStepper {
+  public:
+    CrowdStepper(
+        const CharacterSpans& all, const Assets& assets, const CrowdLibrary* library,
+        const Cuts& cuts, const FrameTime& time)
+        : all_(all), assets_(assets), library_(library), cuts_(cuts), time_(time) {}
+
+    void step(std::size_t begin, std::size_t end) const {
+        thread_local std::vector<Due> due;
+        for (std::size_t i = begin; i < end; ++i) {
+            const SkeletonData* const skeleton =
+                find_asset(assets_.skeletons, all_.skeletons[i].skeleton.index);
+            if (skeleton == nullptr) {
+                continue;
+            }
+            Playback playback = all_.playback(i, cuts_, time_.step);
+            Pose& pose = all_.poses[i];
+            if (!is_due(i, playback, pose.joints.size() == skeleton->joints.size())) {
+                hold_character(pose, all_.morph(i));
+                continue;
+            }
+            if (!all_.crowd_states.empty()) {  // what it plays since its last pose
+                playback.step *= static_cast<float>(all_.crowd_states[i].interval);
+            }
+            const CrowdClip* const clip = find_clip(i, playback, *skeleton);
+            if (clip == nullptr) {
+                step_character(assets_, *skeleton, playback, pose, all_.morph(i));
+                continue;
+            }
+            if (!due.empty() && due.back().skeleton != skeleton) {
+                pose_together(due);
+            }
+            const bool is_new = begin_step(*skeleton, pose, all_.morph(i));
+            due.push_back({i, skeleton, clip, playback, is_new});
+        }
+        pose_together(due);
+    }
+
+  private:
+    struct Due {
+        std::size_t index;
+        const SkeletonData* skeleton;
+        const CrowdClip* clip;
+        Playback playback;
+        bool is_new;
+    };
+
+    [[nodiscard]] bool is_due(std::size_t i, const Playback& playback, bool has_pose) const {
+        return !has_pose || playback.is_cut || all_.crowd_states.empty()
+               || is_pose_due(all_.crowd_states[i], all_.entities[i], time_.frame);
+    }
+
+    [[nodiscard]] const CrowdClip*
+    find_clip(std::size_t i, const Playback& playback, const SkeletonData& skeleton) const {
+        if (library_ == nullptr || playback.player == nullptr || !all_.crowds[i].compressed) {
+            return nullptr;
+        }
+        const CrowdLibrary::Entry* const entry =
+            library_->find(all_.skeletons[i].skeleton, playback.player->clip);
+        const ClipData* const source = find_asset(assets_.clips, playback.player->clip.index);
+        const MorphWeights* const morph = all_.morph(i);
+        const bool fits = entry != nullptr && entry->clip != nullptr && source != nullptr
+                          && entry->clip->joints == skeleton.joints.size()
+                          && has_weights(*source, morph != nullptr ? morph->weights.size() : 0);
+        return fits ? entry->clip.get() : nullptr;
+    }
+
+    void pose_together(std::vector<Due>& due) const {
+        if (due.empty()) {
+            return;
+        }
+        thread_local std::vector<CrowdCharacter> characters;
+        characters.clear();
+        for (const Due& each : due) {
+            characters.push_back(
+                {.clip = each.clip,
+                 .time = each.playback.player->time,
+                 .joints = all_.poses[each.index].joints.data()});
+        }
+        pose_crowd(*library_->rigs[all_.skeletons[due[0].index].skeleton.index], characters);
+        for (const Due& each : due) {
+            if (MorphWeights* const morph = all_.morph(each.index); morph != nullptr) {
+                const ClipPlayer& player = *each.playback.player;
+                sample_clip_weights(assets_.clips[player.clip.index], player.time, morph->weights);
+            }
+            finish_step(
+                assets_, *each.skeleton, each.playback, each.is_new, all_.poses[each.index],
+                all_.morph(each.index));
+        }
+        due.clear();
+    }
+
+    const CharacterSpans& all_;
+    const Assets& assets_;
+    const CrowdLibrary* library_;
+    const Cuts& cuts_;
+    const FrameTime time_;
+};
 
 /// The same for an entity with morph targets only.
 void step_weights(const Assets& assets, const Playback& playback, MorphWeights& morph) {
@@ -215,7 +362,7 @@ void add_poses(
 void update_poses(
     Query<
         const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
-        Optional<MorphWeights>, Pose>
+        Optional<const CrowdPose>, Optional<const CrowdPoseState>, Optional<MorphWeights>, Pose>
         characters,
     Query<
         MorphWeights, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
@@ -223,34 +370,39 @@ void update_poses(
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
     Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
-    Commands commands) {
+    OptionalRes<const CrowdLibrary> crowds, Commands commands) {
     const Cuts cuts(teleports, parents, pose_cuts);
-    const float step = time ? time->step : 0.0f;
+    const FrameTime now = time ? *time : FrameTime{.step = 0.0f};
     pose_cuts.each([&](Entity entity, const PoseCut&) { commands.remove<PoseCut>(entity); });
-    characters.chunks([&](ChunkView chunk, std::span<const Skeleton> skeletons,
-                          std::span<const ClipPlayer> players,
-                          std::span<const MorphPlayer> morph_players,
-                          std::span<MorphWeights> morphs, std::span<Pose> poses) {
-        const std::span<const Entity> entities = chunk.entities();
-        parallel_for(poses.size(), kPoseGrain, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const SkeletonData* const skeleton =
-                    find_asset(assets->skeletons, skeletons[i].skeleton.index);
-                if (skeleton != nullptr) {
-                    const Playback playback = {
-                        players.empty() ? nullptr : &players[i],
-                        morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]),
-                        step};
-                    step_character(
-                        *assets, *skeleton, playback, poses[i],
-                        morphs.empty() ? nullptr : &morphs[i]);
-                }
+    characters.chunks(
+        [&](ChunkView chunk, std::span<const Skeleton> skeletons,
+            std::span<const ClipPlayer> players, std::span<const MorphPlayer> morph_players,
+            std::span<const CrowdPose> crowd_poses, std::span<const CrowdPoseState> crowd_states,
+            std::span<MorphWeights> morphs, std::span<Pose> poses) {
+            const CharacterSpans all = {chunk.entities(), skeletons,    players, morph_players,
+                                        crowd_poses,      crowd_states, morphs,  poses};
+            if (!crowd_poses.empty()) {
+                const CrowdStepper stepper(all, *assets, crowds.get(), cuts, now);
+                parallel_for(poses.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
+                    stepper.step(begin, end);
+                });
+                return;
             }
+            parallel_for(poses.size(), kPoseGrain, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const SkeletonData* const skeleton =
+                        find_asset(assets->skeletons, skeletons[i].skeleton.index);
+                    if (skeleton != nullptr) {
+                        step_character(
+                            *assets, *skeleton, all.playback(i, cuts, now.step), poses[i],
+                            all.morph(i));
+                    }
+                }
+            });
         });
-    });
     faces.each([&](Entity entity, MorphWeights& morph, const ClipPlayer* player,
                    const MorphPlayer* morph_player) {
-        step_weights(*assets, {player, morph_player, cuts.has(entity), step}, morph);
+        step_weights(*assets, {player, morph_player, cuts.has(entity), now.step}, morph);
     });
 }
 

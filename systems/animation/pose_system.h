@@ -2,6 +2,7 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
+#include "ecs/components/crowd_pose.h"
 #include "ecs/components/step_jumps.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
@@ -11,6 +12,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "ecs/system.h"
+#include "systems/animation/crowd_pose_system.h"
 
 namespace limn {
 
@@ -29,11 +31,12 @@ void add_poses(
     Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
     Res<const Assets> assets, Commands commands);
 
-/// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters.
+/// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters. Those with a
+/// CrowdPose are posed together, and only when they are due (crowd_pose_system.h).
 void update_poses(
     Query<
         const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
-        Optional<MorphWeights>, Pose>
+        Optional<const CrowdPose>, Optional<const CrowdPoseState>, Optional<MorphWeights>, Pose>
         characters,
     Query<
         MorphWeights, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
@@ -41,7 +44,7 @@ void update_poses(
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
     Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
-    Commands commands);
+    OptionalRes<const CrowdLibrary> crowds, Commands commands);
 
 /// Writes the Transform of attached entities, without shear, unless the character has no such
 /// joint. They jump where their joint does.

@@ -58,8 +58,9 @@ std::vector<glm::dmat4> exact_joints(const TestCrowd& crowd, const CrowdCharacte
         for (std::size_t j = 0; j < joints; ++j) {
             const float* const q = clip.rotations.constants.data() + j;
             const float* const t = clip.translations.constants.data() + j;
-            pose[j].rotation = glm::dquat(q[3 * joints], q[0], q[joints], q[2 * joints]);
-            pose[j].translation = glm::dvec3(t[0], t[joints], t[2 * joints]);
+            const std::size_t stride = pose_stride(joints);
+            pose[j].rotation = glm::dquat(q[3 * stride], q[0], q[stride], q[2 * stride]);
+            pose[j].translation = glm::dvec3(t[0], t[stride], t[2 * stride]);
         }
         for (const TrackRun& run : clip.rotations.runs) {
             const CrowdTracks& t = clip.rotations;

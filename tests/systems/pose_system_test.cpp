@@ -364,6 +364,7 @@ TEST_CASE("pose system: steps after a character's first allocate nothing") {
         const Entity character = stage.world.create(
             Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {1}}, MorphWeights{{0, 0}, {}});
         stage.world.create(Transform{}, Parent{character}, JointAttachment{character, 3});
+        stage.world.create(Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {0}}, CrowdPose{});
     }
     start_world(stage.world);
     const auto step = [&] {

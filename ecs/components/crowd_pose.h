@@ -1,0 +1,44 @@
+#pragma once
+
+#include "ecs/reflect.h"
+
+#include <cstdint>
+
+namespace limn {
+
+/// With a Skeleton and a ClipPlayer: poses the character as one of a crowd, from a compressed copy
+/// of its clip, 16 at a time, and less often far from the camera. Clips that cannot be compressed
+/// are sampled as without it.
+struct CrowdPose {
+    bool compressed = true;
+    float full_rate_within = 15.0f;
+    float half_rate_within = 40.0f;
+};
+
+LIMN_FIELDS(CrowdPose) {
+    LIMN_FIELD(
+        compressed, "samples a copy of the clip with 48-bit rotations, within 1 mm on a person of "
+                    "2 m; false: the clip itself");
+    LIMN_FIELD(
+        full_rate_within, "distance from the camera up to which it is posed in every step", "m", 0,
+        1e6);
+    LIMN_FIELD(
+        half_rate_within, "up to which in every second step; beyond, in every fourth", "m", 0, 1e6);
+}
+
+/// How often a crowd's character is posed: chosen by choose_pose_rates().
+struct CrowdPoseState {
+    std::uint8_t interval = 1;  ///< steps: 1, 2 or 4
+};
+
+LIMN_FIELDS(CrowdPoseState) {
+    LIMN_FIELD(interval, "steps from one pose to the next", "", 1, 4);
+}
+
+/// Not copied with a prefab: an instance has no history.
+template <>
+struct ComponentTraits<CrowdPoseState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+}  // namespace limn

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/crowd_pose.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+#include "systems/animation/crowd_clip.h"
+#include "systems/animation/pose_chain.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Crowds: compressed copies of their clips, and how often each character is posed. update_poses()
+// poses those that are due.
+
+/// Resource: what was made of skeletons and clips. Empty entries: of no crowd, or not convertible.
+struct CrowdLibrary {
+    struct Entry {
+        SkeletonId skeleton;
+        std::shared_ptr<const CrowdClip> clip;  ///< null: cannot be compressed
+    };
+    std::vector<std::shared_ptr<const CrowdRig>> rigs;  ///< by skeleton
+    std::vector<std::vector<Entry>> clips;              ///< by clip
+
+    [[nodiscard]] const Entry* find(SkeletonId skeleton, ClipId clip) const;
+};
+
+/// Adds a state to every CrowdPose without one.
+void add_crowd_poses(Query<const CrowdPose, Without<CrowdPoseState>> crowds, Commands commands);
+
+/// Compresses clips that crowds play for the first time.
+void prepare_crowd_clips(
+    Query<const CrowdPose, const Skeleton, const ClipPlayer> crowds, Res<const Assets> assets,
+    Res<CrowdLibrary> library);
+
+/// Steps from one pose to the next at a distance: 1, 2 or 4. It changes 10 % beyond a border, not
+/// at it, so that characters near one do not alternate.
+[[nodiscard]] std::uint8_t
+choose_pose_interval(const CrowdPose& crowd, float distance, std::uint8_t current);
+
+/// Chooses the intervals by the distance from the active camera.
+void choose_pose_rates(
+    Query<const CrowdPose, const WorldTransform, CrowdPoseState> crowds,
+    Query<const Camera, const WorldTransform> cameras);
+
+/// Whether a character is posed in this step. 16 neighbors are posed in the same step, and the
+/// next 16 in another one: groups stay whole, and each step has as much work as any other.
+[[nodiscard]] bool is_pose_due(const CrowdPoseState& state, Entity entity, std::uint64_t frame);
+
+}  // namespace limn
