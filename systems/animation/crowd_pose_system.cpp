@@ -10,7 +10,6 @@ namespace limn {
 namespace {
 
 constexpr float kHysteresis = 1.1f;
-constexpr std::uint32_t kNeighbors = 16;  ///< of consecutive entity indices
 
 Vec3 origin_of(const WorldTransform& transform) {
     const Affine& world = transform.world;
@@ -31,17 +30,6 @@ std::shared_ptr<const CrowdClip> compress(const SkeletonData& skeleton, const Cl
 }
 
 }  // namespace
-
-const CrowdLibrary::Entry* CrowdLibrary::find(SkeletonId skeleton, ClipId clip) const {
-    if (clip.index < clips.size()) {
-        for (const Entry& entry : clips[clip.index]) {
-            if (entry.skeleton == skeleton) {
-                return &entry;
-            }
-        }
-    }
-    return nullptr;
-}
 
 void add_crowd_poses(Query<const CrowdPose, Without<CrowdPoseState>> crowds, Commands commands) {
     crowds.each([&](Entity entity, const CrowdPose&) { commands.add(entity, CrowdPoseState{}); });
@@ -101,11 +89,6 @@ void choose_pose_rates(
             const float distance = glm::distance(origin_of(transform), eye);
             state.interval = choose_pose_interval(crowd, distance, state.interval);
         });
-}
-
-bool is_pose_due(const CrowdPoseState& state, Entity entity, std::uint64_t frame) {
-    const std::uint64_t turn = frame + entity.index / kNeighbors;
-    return state.interval < 2 || turn % state.interval == 0;
 }
 
 }  // namespace limn

@@ -9,30 +9,14 @@
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
-#include "systems/animation/crowd_clip.h"
-#include "systems/animation/pose_chain.h"
+#include "systems/animation/crowd_library.h"
 
 #include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
 
 namespace limn {
 
 // Crowds: compressed copies of their clips, and how often each character is posed. update_poses()
 // poses those that are due.
-
-/// Resource: what was made of skeletons and clips. Empty entries: of no crowd, or not convertible.
-struct CrowdLibrary {
-    struct Entry {
-        SkeletonId skeleton;
-        std::shared_ptr<const CrowdClip> clip;  ///< null: cannot be compressed
-    };
-    std::vector<std::shared_ptr<const CrowdRig>> rigs;  ///< by skeleton
-    std::vector<std::vector<Entry>> clips;              ///< by clip
-
-    [[nodiscard]] const Entry* find(SkeletonId skeleton, ClipId clip) const;
-};
 
 /// Adds a state to every CrowdPose without one.
 void add_crowd_poses(Query<const CrowdPose, Without<CrowdPoseState>> crowds, Commands commands);
@@ -51,9 +35,5 @@ choose_pose_interval(const CrowdPose& crowd, float distance, std::uint8_t curren
 void choose_pose_rates(
     Query<const CrowdPose, const WorldTransform, CrowdPoseState> crowds,
     Query<const Camera, const WorldTransform> cameras);
-
-/// Whether a character is posed in this step. 16 neighbors are posed in the same step, and the
-/// next 16 in another one: groups stay whole, and each step has as much work as any other.
-[[nodiscard]] bool is_pose_due(const CrowdPoseState& state, Entity entity, std::uint64_t frame);
 
 }  // namespace limn

@@ -4,7 +4,7 @@
 #include "ecs/components/placement.h"
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
-#include "systems/animation/crowd_pose_system.h"
+#include "systems/animation/crowd_library.h"
 
 #include <algorithm>
 #include <map>

@@ -12,7 +12,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "ecs/system.h"
-#include "systems/animation/crowd_pose_system.h"
+#include "systems/animation/crowd_library.h"
 
 namespace limn {
 
@@ -32,7 +32,7 @@ void add_poses(
     Res<const Assets> assets, Commands commands);
 
 /// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters. Those with a
-/// CrowdPose are posed together, and only when they are due (crowd_pose_system.h).
+/// CrowdPose are posed together, and only when they are due (crowd_library.h).
 void update_poses(
     Query<
         const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
