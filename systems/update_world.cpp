@@ -9,6 +9,7 @@
 #include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "systems/animation/key_track_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
@@ -86,6 +87,9 @@ void add_animation_systems(SystemList& systems) {
     systems.add<bind_surfaces>(Move, Both);
     systems.add<add_rotation_track_states>(Create, Both);
     systems.add<prepare_rotation_tracks>(Move);
+    systems.add<add_key_track_states>(Create, Both);
+    systems.add<prepare_key_tracks>(Move);
+    systems.add<update_key_tracks>(Move, Both);
     systems.add<update_skin_pulls>(Move);  // takes what is displayed: the previous pose
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);

@@ -24,6 +24,7 @@
 #include "ecs/components/height_fog.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/input.h"
+#include "ecs/components/key_track.h"
 #include "ecs/components/lens_flare.h"
 #include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
@@ -151,6 +152,7 @@ void register_all_components() {
     register_component<JointAttachment>();
     register_component<PathFollower>();
     register_component<RotationTrack>();
+    register_component<KeyTrack>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

@@ -63,6 +63,20 @@ TEST_CASE("scene warnings: keyframes whose times do not increase") {
             "(1 s)"});
 }
 
+TEST_CASE("scene warnings: key tracks that animate nothing") {
+    CHECK(warnings_of(R"({"entities": [{"name": "lamp", "point_light": {}, "key_track": {"tracks": [
+        {"field": "point_light.radius", "times": [0, 1], "values": [1, 2]}]}}]})")
+              .empty());
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "lamp", "point_light": {}, "key_track": {"tracks": [
+        {"field": "point_light.radius", "times": [0, 1, 1], "values": [1, 2, 3]},
+        {"field": "spot_light.radius", "times": [0], "values": [1]}]}}]})")
+        == Warnings{
+            "entity \"lamp\": key_track: point_light.radius: times: found 1 s at key 2, expected "
+            "more than the key before",
+            "entity \"lamp\": key_track: spot_light.radius has no effect without spot_light"});
+}
+
 TEST_CASE("scene warnings: components that have no effect without another") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera": {}, "autofocus": {}}]})")

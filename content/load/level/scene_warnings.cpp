@@ -8,6 +8,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
 #include "ecs/components/env_probe.h"
+#include "ecs/components/key_track.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
@@ -63,6 +64,8 @@ constexpr Need kNeeds[] = {
     {"autofocus", {"camera", "", ""}},
     {"autofocus", {"lens", "", ""}},
     {"camera_path", {"camera", "", ""}},
+    {"crowd_pose", {"skeleton", "", ""}},
+    {"crowd_pose", {"clip_player", "", ""}},
     {"speed_view", {"camera", "", ""}},
     {"fur", {"mesh_instance", "", ""}},
     {"inflate", {"mesh_instance", "", ""}},
@@ -296,6 +299,23 @@ struct SceneCheck {
         });
     }
 
+    /// Tracks of fields that do not exist, or with bad keys.
+    void check_key_tracks() {
+        world.query<const KeyTrack>().each([&](Entity entity, const KeyTrack& tracks) {
+            for (const FieldTrack& track : tracks.tracks) {
+                const Result<TrackTarget> target = find_track_target(track);
+                if (!target) {
+                    warn(entity, target.error().message);
+                } else if (!world.has(entity, target->component->id)) {
+                    warn(
+                        entity, fmt::format(
+                                    "key_track: {} has no effect without {}", track.field,
+                                    target->component->name));
+                }
+            }
+        });
+    }
+
     /// Sizes that the renderer and the simulation round to a power of two.
     void check_resolutions() {
         const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
@@ -412,6 +432,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_colors<DirectionalLight>();
     check.check_key_order<CameraPath>();
     check.check_key_order<RotationTrack>();
+    check.check_key_tracks();
     check.check_key_order<WrinkleTrack>();
     find_wrinkle_warnings(world, check.warnings);
     check.check_resolutions();

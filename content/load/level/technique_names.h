@@ -26,6 +26,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"anim.constant-angular-velocity", "equal angular speed over many keys"},
     {"anim.euler", "Euler-angle interpolation"},
     {"anim.key-lookup", "key search and time normalization, keyframes"},
+    {"anim.key-track", "keyframe track, keyframe animation of properties"},
     {"anim.lerp", "linear interpolation"},
     {"anim.mocap-keys", "motion capture samples as keys"},
     {"anim.parabolic-blend", "parabolic blending of a quadrangle"},
