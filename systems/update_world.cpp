@@ -13,6 +13,7 @@
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
+#include "systems/attach_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/skin_pull_system.h"
@@ -66,6 +67,7 @@ void add_object_systems(SystemList& systems) {
     systems.add<add_world_transforms>(Create);
     systems.add<add_env_probe_states>(Create, Both);
     systems.add<add_relief_box_states>(Create, Both);
+    systems.add<update_attach>(Create, Both);
     systems.add<update_spins>(Move);
     systems.add<update_sways>(Move, Both);
     systems.add<update_ripples>(Move);

@@ -1,6 +1,7 @@
 #include "ecs/components/all.h"
 
 #include "ecs/components/animation.h"
+#include "ecs/components/attach.h"
 #include "ecs/components/beam.h"
 #include "ecs/components/billboard.h"
 #include "ecs/components/buoyancy.h"
@@ -153,6 +154,9 @@ void register_all_components() {
     register_component<PathFollower>();
     register_component<RotationTrack>();
     register_component<KeyTrack>();
+    register_component<Attach>();
+    register_component<AttachPoints>();
+    register_component<AttachState>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

@@ -80,6 +80,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"deferred.light-pass", "deferred lighting, one pass for all lights"},
     {"deferred.light-volume", "light volumes in deferred shading"},
     {"engine.animate", "animate step"},
+    {"engine.attach", "attach points, sockets, dummies"},
     {"engine.batching", "batching, instancing"},
     {"engine.billboard", "billboards"},
     {"engine.billboard-composite", "composite animated billboard"},
