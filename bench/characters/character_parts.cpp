@@ -6,6 +6,7 @@ void add_clip_rows(CharacterBench& bench);
 void add_chain_rows(CharacterBench& bench);
 void add_vertex_rows(CharacterBench& bench);
 void add_memory_rows(CharacterBench& bench);
+void add_world_rows(CharacterBench& bench);
 
 std::span<const CharacterPart> character_parts() {
     static constexpr CharacterPart kParts[] = {
@@ -13,6 +14,7 @@ std::span<const CharacterPart> character_parts() {
         {"chain", add_chain_rows},      // 6 .. 8: all of it in one pass
         {"vertices", add_vertex_rows},  // 9
         {"memory", add_memory_rows},    // 20, 21
+        {"world", add_world_rows},      // update_poses
     };
     return kParts;
 }

@@ -162,7 +162,7 @@ CrowdTracks pack_translations(const SampledClip& sampled, float tolerance) {
     make_runs(find_animated(sampled.translations, sampled.joints, tolerance), tracks);
     set_constants(sampled.translations, sampled.joints, 3, tracks);
     tracks.frames.assign(3 * tracks.animated * sampled.frames + kPoseBlock, 0);
-    tracks.ranges.assign(6 * tracks.animated + kPoseBlock, 0.0f);
+    tracks.ranges.assign(tracks.animated > 0 ? 6 * tracks.animated + kPoseBlock : 0, 0.0f);
     each_track(tracks, [&](std::size_t joint, std::size_t column) {
         Bounds range;
         for (std::size_t f = 0; f < sampled.frames; ++f) {

@@ -83,8 +83,7 @@ void update_key_tracks(World& world) {
             for (std::size_t i = 0; i < std::min(state.targets.size(), track.tracks.size()); ++i) {
                 const TrackTarget& target = state.targets[i];
                 const FieldTrack& each = track.tracks[i];
-                if (target.field != nullptr && !each.times.empty()
-                    && world.has(entity, target.component->id)) {
+                if (target.field != nullptr && !each.times.empty()) {
                     writes.push_back(
                         {entity, target, track_value(each, target.field->type, time->time),
                          restarts(each, time->time, time->step)});

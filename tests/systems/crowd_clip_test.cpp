@@ -181,6 +181,45 @@ TEST_CASE("crowd clip: at a frame the pose is the frame, and every rotation is u
     }
 }
 
+TEST_CASE("crowd clip: between frames that are far apart rotations are unit, too") {
+    // 48 degrees from frame to frame: the cosine of half of that is 0.914.
+    const SkeletonData skeleton = make_chain(2);
+    const ClipData turn = make_turn({0, 1, 2, 3}, {0, 48, 96, 144}, 1);
+    const auto clip = make_crowd_clip(skeleton, turn, {1, 0.1f});
+    REQUIRE(clip);
+    REQUIRE(clip->frames == 4);
+    PoseRows rows;
+    for (int i = 0; i <= 300; ++i) {
+        sample_crowd_clip(*clip, 0.01f * static_cast<float>(i), rows);
+        REQUIRE(length_of(rows, 1) == near(1).epsilon(1e-6));
+    }
+    // Steps that are larger get more frames, whatever the tolerance.
+    const ClipData faster = make_turn({0, 1, 2, 3}, {0, 60, 120, 180}, 1);
+    const auto dense = make_crowd_clip(skeleton, faster, {1, 0.1f});
+    REQUIRE(dense);
+    CHECK(dense->frames > 4);
+}
+
+TEST_CASE("crowd clip: joints that do not move are stored once, but for a few between others") {
+    const SkeletonData skeleton = make_chain(40);
+    const auto animated = [&skeleton](const std::vector<std::uint16_t>& joints) {
+        ClipData clip = make_turn({0, 0.5f, 1}, {0, 10, 0}, 0);
+        ClipSheet sheet = clip.sheets[0];
+        clip.sheets.clear();
+        for (const std::uint16_t joint : joints) {
+            sheet.rotating = {joint};
+            clip.sheets.push_back(sheet);
+        }
+        const auto packed = make_crowd_clip(skeleton, clip, {1, 0.1f});
+        return packed ? packed->rotations.animated : 99;
+    };
+    CHECK(animated({5}) == 1);
+    CHECK(animated({2, 5}) == 4);
+    CHECK(animated({2, 12}) == 2);
+    CHECK(animated({15, 16}) == 2);
+    CHECK(animated({2, 12, 30, 31, 32}) == 5);
+}
+
 TEST_CASE("crowd clip: times in any order give the bits of times in order") {
     const TestCrowd crowd(40, 0);
     std::vector<PoseRows> forward(100);

@@ -131,6 +131,12 @@ TEST_CASE("key_track: rotations follow great arcs, or squad's curve through inne
     const Quat bent = to_quat(track_value(smooth, FieldType::Quat, 1));
     CHECK(std::abs(bent.x) > 0.01f);
     CHECK(glm::length(bent) == near(1).epsilon(1e-6));
+    // So does the one before the second key; that after it is for what follows.
+    smooth.values[12 + 6] += 0.5f;
+    const Quat twice = to_quat(track_value(smooth, FieldType::Quat, 1));
+    CHECK(std::abs(twice.z - bent.z) > 0.01f);
+    smooth.values[12 + 10] += 0.5f;
+    CHECK(to_quat(track_value(smooth, FieldType::Quat, 1)) == twice);
 }
 
 TEST_CASE(
