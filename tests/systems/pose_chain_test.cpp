@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <hwy/targets.h>
 
 #include <cstdint>
 #include <numeric>
@@ -136,6 +137,22 @@ TEST_CASE(
             }
         }
     }
+}
+
+TEST_CASE("pose chain: bits are the same with vectors of every instruction set") {
+    TestCrowd crowd(37, 21);
+    const std::vector<Affine> binds = make_binds(37);
+    pose_crowd_scalar(crowd.rig, crowd.characters, binds);
+    const Joints scalar = crowd.joints;
+    for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+        hwy::SetSupportedTargetsForTest(left & -left);
+        hwy::GetChosenTarget().DeInit();
+        CAPTURE(pose_vector_floats());
+        pose_crowd(crowd.rig, crowd.characters, binds);
+        CHECK(same_bits(crowd.joints, scalar));
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
 }
 
 TEST_CASE("pose chain: its steps have the bits of plain C++, and together those of the chain") {
