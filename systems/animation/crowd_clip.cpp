@@ -80,37 +80,22 @@ std::vector<bool> find_animated(const std::vector<T>& values, std::size_t joints
     return animated;
 }
 
-/// Runs end where blocks do; a few constant joints between animated ones count as animated.
-void make_runs(std::vector<bool> animated, CrowdTracks& tracks) {
-    const std::size_t joints = animated.size();
-    for (std::size_t begin = 0; begin < joints; begin += kPoseBlock) {
-        tracks.block_runs.push_back(static_cast<std::uint32_t>(tracks.runs.size()));
-        const std::size_t end = std::min(begin + kPoseBlock, joints);
-        std::size_t last = end;  // animated joint
-        for (std::size_t j = begin; j < end; ++j) {
-            if (!animated[j]) {
-                continue;
-            }
-            if (last < j && j - last - 1 < kMinConstantRun) {
-                std::fill(animated.begin() + last, animated.begin() + j, true);
-            }
-            last = j;
+/// A few constant joints between animated ones count as animated.
+void make_runs(const std::vector<bool>& animated, CrowdTracks& tracks) {
+    for (std::size_t j = 0; j < animated.size(); ++j) {
+        if (!animated[j]) {
+            continue;
         }
-        for (std::size_t j = begin; j < end; ++j) {
-            if (!animated[j]) {
-                continue;
-            }
-            if (j > begin && animated[j - 1]) {
-                ++tracks.runs.back().count;
-            } else {
-                tracks.runs.push_back(
-                    {static_cast<std::uint16_t>(j), 1,
-                     static_cast<std::uint32_t>(tracks.animated)});
-            }
-            ++tracks.animated;
+        const std::size_t end =
+            tracks.runs.empty() ? 0 : tracks.runs.back().first + tracks.runs.back().count;
+        const std::size_t first = !tracks.runs.empty() && j - end < kMinConstantRun ? end : j;
+        if (first == j && (tracks.runs.empty() || j != end)) {
+            tracks.runs.push_back(
+                {static_cast<std::uint16_t>(j), 0, static_cast<std::uint32_t>(tracks.animated)});
         }
+        tracks.runs.back().count += static_cast<std::uint16_t>(j + 1 - first);
+        tracks.animated += j + 1 - first;
     }
-    tracks.block_runs.push_back(static_cast<std::uint32_t>(tracks.runs.size()));
 }
 
 /// Calls put(joint, column) for each animated track.
@@ -131,7 +116,7 @@ void set_constants(
         return;
     }
     const std::size_t stride = pose_stride(joints);
-    tracks.constants.assign(components * stride + kPoseBlock, 0.0f);
+    tracks.constants.assign(components * stride + kPosePadding, 0.0f);
     for (std::size_t row = 0; row < components; ++row) {
         for (std::size_t j = 0; j < joints; ++j) {
             tracks.constants[row * stride + j] = values[j][static_cast<glm::length_t>(row)];
@@ -143,7 +128,7 @@ CrowdTracks pack_rotations(const SampledClip& sampled) {
     CrowdTracks tracks;
     make_runs(find_animated(sampled.rotations, sampled.joints, kSameRotation), tracks);
     set_constants(sampled.rotations, sampled.joints, 4, tracks);
-    tracks.frames.assign(3 * tracks.animated * sampled.frames + kPoseBlock, 0);
+    tracks.frames.assign(3 * tracks.animated * sampled.frames + kPosePadding, 0);
     for (std::size_t f = 0; f < sampled.frames; ++f) {
         std::uint16_t* const rows = tracks.frames.data() + 3 * tracks.animated * f;
         each_track(tracks, [&](std::size_t joint, std::size_t column) {
@@ -161,8 +146,8 @@ CrowdTracks pack_translations(const SampledClip& sampled, float tolerance) {
     CrowdTracks tracks;
     make_runs(find_animated(sampled.translations, sampled.joints, tolerance), tracks);
     set_constants(sampled.translations, sampled.joints, 3, tracks);
-    tracks.frames.assign(3 * tracks.animated * sampled.frames + kPoseBlock, 0);
-    tracks.ranges.assign(tracks.animated > 0 ? 6 * tracks.animated + kPoseBlock : 0, 0.0f);
+    tracks.frames.assign(3 * tracks.animated * sampled.frames + kPosePadding, 0);
+    tracks.ranges.assign(tracks.animated > 0 ? 6 * tracks.animated + kPosePadding : 0, 0.0f);
     each_track(tracks, [&](std::size_t joint, std::size_t column) {
         Bounds range;
         for (std::size_t f = 0; f < sampled.frames; ++f) {
@@ -421,8 +406,7 @@ std::size_t crowd_clip_bytes(const CrowdClip& clip) {
     for (const CrowdTracks* tracks : {&clip.rotations, &clip.translations}) {
         bytes += tracks->frames.size() * sizeof(std::uint16_t)
                  + tracks->constants.size() * sizeof(float) + tracks->ranges.size() * sizeof(float)
-                 + tracks->runs.size() * sizeof(TrackRun)
-                 + tracks->block_runs.size() * sizeof(std::uint32_t);
+                 + tracks->runs.size() * sizeof(TrackRun);
     }
     return bytes;
 }

@@ -30,12 +30,12 @@ namespace limn {
     return (joints + 3) / 4 * 4;
 }
 
-/// Joints processed together.
-inline constexpr std::size_t kPoseBlock = 16;
+/// Elements after the last one that vectors may read.
+inline constexpr std::size_t kPosePadding = 16;
 /// Characters processed together, in the lanes of vectors.
 inline constexpr std::size_t kPoseLanes = 16;
 
-/// Consecutive animated joints of a block.
+/// Consecutive animated joints.
 struct TrackRun {
     std::uint16_t first = 0;  ///< joint
     std::uint16_t count = 0;
@@ -44,10 +44,9 @@ struct TrackRun {
 
 /// Rotations or translations of all joints.
 struct CrowdTracks {
-    std::vector<TrackRun> runs;             ///< ascending by joint, none crosses a block
-    std::vector<std::uint32_t> block_runs;  ///< first run of each block, and one past the last
-    std::size_t animated = 0;               ///< tracks in frames
-    std::vector<std::uint16_t> frames;      ///< each: three rows of all tracks; then padding
+    std::vector<TrackRun> runs;         ///< ascending by joint
+    std::size_t animated = 0;           ///< tracks in frames
+    std::vector<std::uint16_t> frames;  ///< each: three rows of all tracks; then padding
     std::vector<float> constants;  ///< rows as in PoseRows, then padding; empty if all are animated
     std::vector<float> ranges;     ///< of animated translations, six rows: smallest x y z [m], then
                                    ///< what one step of a word is [m]; then padding

@@ -53,17 +53,12 @@ inline void copy_all_constants(const CrowdClip& clip, PoseRows& rows) {
         if (!constants.empty()) {
             std::memcpy(
                 rows.values.data() + first * rows.stride, constants.data(),
-                (constants.size() - kPoseBlock) * sizeof(float));
+                (constants.size() - kPosePadding) * sizeof(float));
         }
     };
     copy(clip.rotations.constants, 0);
     copy(clip.translations.constants, 4);
 }
-
-/// A block of local transforms: rows of kPoseBlock joints.
-struct Block {
-    alignas(64) float rows[PoseRows::kRows][kPoseBlock];
-};
 
 /// Where the rows of each character are and where its matrices go.
 struct Lanes {
@@ -91,10 +86,6 @@ bool blend_rows(const PoseRows&, const PoseRows&, float, PoseRows&) {
     return false;
 }
 bool multiply_rows(const CrowdRig&, const crowd::Lanes&, const Affine*, float*) {
-    return false;
-}
-bool pose_lanes(
-    const CrowdRig&, const CrowdCharacter*, const crowd::Lanes&, const Affine*, float*) {
     return false;
 }
 
@@ -210,17 +201,15 @@ HWY_INLINE void store_first(D d, hn::Vec<D> v, std::size_t count, float* to) {
     }
 }
 
-/// Animated rotations of runs, into rows that begin with joint `origin`.
+/// The animated rotations.
 HWY_INLINE void sample_rotations(
-    const CrowdTracks& tracks, const crowd::FramePair& at, std::size_t begin, std::size_t end,
-    std::size_t origin, float* rows, std::size_t stride) {
+    const CrowdTracks& tracks, const crowd::FramePair& at, float* rows, std::size_t stride) {
     const std::size_t width = tracks.animated;
     const std::uint16_t* const frame = tracks.frames.data() + 3 * width * at.first;
     const std::size_t next = 3 * width * at.step;
-    for (std::size_t r = begin; r < end; ++r) {
-        const TrackRun run = tracks.runs[r];
+    for (const TrackRun& run : tracks.runs) {
         const std::uint16_t* const words = frame + run.track;
-        float* const out = rows + (run.first - origin);
+        float* const out = rows + run.first;
         each_vector(
             kFloats, 0, run.count, [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
                 const auto mixed =
@@ -236,16 +225,14 @@ HWY_INLINE void sample_rotations(
 }
 
 HWY_INLINE void sample_translations(
-    const CrowdTracks& tracks, const crowd::FramePair& at, std::size_t begin, std::size_t end,
-    std::size_t origin, float* rows, std::size_t stride) {
+    const CrowdTracks& tracks, const crowd::FramePair& at, float* rows, std::size_t stride) {
     const std::size_t width = tracks.animated;
     const std::uint16_t* const frame = tracks.frames.data() + 3 * width * at.first;
     const std::size_t next = 3 * width * at.step;
-    for (std::size_t r = begin; r < end; ++r) {
-        const TrackRun run = tracks.runs[r];
+    for (const TrackRun& run : tracks.runs) {
         const std::uint16_t* words = frame + run.track;
         const float* range = tracks.ranges.data() + run.track;
-        float* out = rows + (run.first - origin);
+        float* out = rows + run.first;
         for (int axis = 0; axis < 3; ++axis) {
             each_vector(
                 kFloats, 0, run.count,
@@ -266,40 +253,6 @@ HWY_INLINE void sample_translations(
             out += stride;
         }
     }
-}
-
-/// A block of rows that are constant.
-HWY_INLINE void copy_constants(
-    const CrowdTracks& tracks, std::size_t joints, std::size_t begin, std::size_t components,
-    float* rows) {
-    const float* from = tracks.constants.data() + begin;
-    for (std::size_t row = 0; row < components; ++row) {
-        for (std::size_t i = 0; i < kPoseBlock; i += kWidth) {
-            hn::StoreU(hn::LoadU(kFloats, from + i), kFloats, rows + i);
-        }
-        from += pose_stride(joints);
-        rows += kPoseBlock;
-    }
-}
-
-/// The joints of a block into rows of kPoseBlock.
-HWY_INLINE void
-sample_block(const CrowdClip& clip, const crowd::FramePair& at, std::size_t block, float* rows) {
-    const CrowdTracks& turns = clip.rotations;
-    const CrowdTracks& moves = clip.translations;
-    const std::size_t origin = block * kPoseBlock;
-    if (!turns.constants.empty()) {
-        copy_constants(turns, clip.joints, origin, 4, rows);
-    }
-    sample_rotations(
-        turns, at, turns.block_runs[block], turns.block_runs[block + 1], origin, rows, kPoseBlock);
-    float* const translations = rows + 4 * kPoseBlock;
-    if (!moves.constants.empty()) {
-        copy_constants(moves, clip.joints, origin, 3, translations);
-    }
-    sample_translations(
-        moves, at, moves.block_runs[block], moves.block_runs[block + 1], origin, translations,
-        kPoseBlock);
 }
 
 /// The first `size` joints of rows.
@@ -535,11 +488,8 @@ HWY_INLINE void multiply_block(
 bool sample_rows(const CrowdClip& clip, float time, PoseRows& rows) {
     const crowd::FramePair at = crowd::find_frames(clip, time);
     crowd::copy_all_constants(clip, rows);
-    sample_rotations(
-        clip.rotations, at, 0, clip.rotations.runs.size(), 0, rows.values.data(), rows.stride);
-    sample_translations(
-        clip.translations, at, 0, clip.translations.runs.size(), 0,
-        rows.values.data() + 4 * rows.stride, rows.stride);
+    sample_rotations(clip.rotations, at, rows.values.data(), rows.stride);
+    sample_translations(clip.translations, at, rows.values.data() + 4 * rows.stride, rows.stride);
     return true;
 }
 
@@ -551,45 +501,6 @@ bool blend_rows(const PoseRows& a, const PoseRows& b, float weight, PoseRows& ou
 bool multiply_rows(
     const CrowdRig& rig, const crowd::Lanes& lanes, const Affine* bind, float* slots) {
     multiply_block(rig, lanes, 0, rig.joints(), bind, slots);
-    return true;
-}
-
-bool pose_lanes(
-    const CrowdRig& rig, const CrowdCharacter* characters, const crowd::Lanes& lanes,
-    const Affine* bind, float* slots) {
-    crowd::Block blocks[kPoseLanes];
-    crowd::Block next;
-    crowd::FramePair frames[2][kPoseLanes];
-    crowd::Lanes own = lanes;
-    own.stride = kPoseBlock;
-    for (std::size_t c = 0; c < kPoseLanes; ++c) {
-        own.rows[c] = blocks[c].rows[0];
-    }
-    for (std::size_t c = 0; c < lanes.count; ++c) {
-        const CrowdCharacter& character = characters[c];
-        frames[0][c] = crowd::find_frames(*character.clip, character.time);
-        if (character.next != nullptr) {
-            frames[1][c] = crowd::find_frames(*character.next, character.next_time);
-        }
-    }
-    for (std::size_t begin = 0; begin < rig.joints(); begin += kPoseBlock) {
-        const std::size_t block = begin / kPoseBlock;
-        const std::size_t left = rig.joints() - begin;
-        const std::size_t end = begin + (left < kPoseBlock ? left : kPoseBlock);
-        for (std::size_t c = 0; c < lanes.count; ++c) {
-            const CrowdCharacter& character = characters[c];
-            float* const rows = blocks[c].rows[0];
-            sample_block(*character.clip, frames[0][c], block, rows);
-            if (character.next != nullptr) {
-                sample_block(*character.next, frames[1][c], block, next.rows[0]);
-                blend_block(rows, next.rows[0], end - begin, kPoseBlock, character.weight, rows);
-            }
-        }
-        for (std::size_t c = lanes.count; c < kPoseLanes; ++c) {
-            std::memcpy(&blocks[c], &blocks[0], sizeof(crowd::Block));
-        }
-        multiply_block(rig, own, begin, end, bind, slots);
-    }
     return true;
 }
 
@@ -605,7 +516,6 @@ HWY_EXPORT(crowd_vector_floats);
 HWY_EXPORT(sample_rows);
 HWY_EXPORT(blend_rows);
 HWY_EXPORT(multiply_rows);
-HWY_EXPORT(pose_lanes);
 
 namespace {
 
@@ -658,7 +568,7 @@ struct CrowdScratch {
         if (unused.size() < 12 * rig.joints()) {
             unused.resize(12 * rig.joints());
         }
-        rows.resize(2);
+        rows.resize(kPoseLanes + 1);
     }
     [[nodiscard]] float* aligned_slots() {
         const auto address = reinterpret_cast<std::uintptr_t>(slots.data());
@@ -682,18 +592,12 @@ Affine multiply(const Affine& a, const Affine& b) {
     return product;
 }
 
-void pose_one(
-    const CrowdRig& rig, const CrowdCharacter& character, bool scalar,
-    std::span<const Affine> joint_from_mesh) {
-    std::vector<PoseRows>& rows = crowd_scratch(rig).rows;
-    const auto sample = scalar ? sample_crowd_clip_scalar : sample_crowd_clip;
-    const auto blend = scalar ? blend_poses_scalar : blend_poses;
-    sample(*character.clip, character.time, rows[0]);
+void sample_character(const CrowdCharacter& character, PoseRows& rows, PoseRows& next) {
+    sample_crowd_clip(*character.clip, character.time, rows);
     if (character.next != nullptr) {
-        sample(*character.next, character.next_time, rows[1]);
-        blend(rows[0], rows[1], character.weight, rows[0]);
+        sample_crowd_clip(*character.next, character.next_time, next);
+        blend_poses(rows, next, character.weight, rows);
     }
-    compute_crowd_joints(rig, rows[0], {character.joints, rig.joints()}, joint_from_mesh);
 }
 
 }  // namespace
@@ -842,31 +746,34 @@ void compute_crowd_joints(
 void pose_crowd_scalar(
     const CrowdRig& rig, std::span<const CrowdCharacter> characters,
     std::span<const Affine> joint_from_mesh) {
+    PoseRows rows;
+    PoseRows next;
     for (const CrowdCharacter& character : characters) {
-        pose_one(rig, character, true, joint_from_mesh);
+        sample_crowd_clip_scalar(*character.clip, character.time, rows);
+        if (character.next != nullptr) {
+            sample_crowd_clip_scalar(*character.next, character.next_time, next);
+            blend_poses_scalar(rows, next, character.weight, rows);
+        }
+        compute_crowd_joints(rig, rows, {character.joints, rig.joints()}, joint_from_mesh);
     }
 }
 
 void pose_crowd(
     const CrowdRig& rig, std::span<const CrowdCharacter> characters,
     std::span<const Affine> joint_from_mesh) {
-    LIMN_CHECK(joint_from_mesh.empty() || joint_from_mesh.size() == rig.joints());
-    CrowdScratch& scratch = crowd_scratch(rig);
+    std::vector<PoseRows>& rows = crowd_scratch(rig).rows;
     for (std::size_t begin = 0; begin < characters.size(); begin += kPoseLanes) {
         const auto group =
             characters.subspan(begin, std::min(kPoseLanes, characters.size() - begin));
-        crowd::Lanes lanes = {};
-        lanes.count = group.size();
-        for (std::size_t c = 0; c < kPoseLanes; ++c) {
-            lanes.joints[c] = c < group.size() ? &group[c].joints->row[0].x : scratch.unused.data();
+        const PoseRows* local[kPoseLanes];
+        Affine* joints[kPoseLanes];
+        for (std::size_t c = 0; c < group.size(); ++c) {
+            sample_character(group[c], rows[c], rows[kPoseLanes]);
+            local[c] = &rows[c];
+            joints[c] = group[c].joints;
         }
-        if (group.size() < kMinLanes
-            || !HWY_DYNAMIC_DISPATCH(pose_lanes)(
-                rig, group.data(), lanes, joint_from_mesh.data(), scratch.aligned_slots())) {
-            for (const CrowdCharacter& character : group) {
-                pose_one(rig, character, false, joint_from_mesh);
-            }
-        }
+        compute_crowd_joints(
+            rig, std::span(local, group.size()), std::span(joints, group.size()), joint_from_mesh);
     }
 }
 

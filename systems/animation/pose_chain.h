@@ -10,9 +10,9 @@
 
 namespace limn {
 
-// Poses of crowds, from clips to matrices in one pass: sampled and blended with 16 joints of one
-// character in the lanes of vectors, transposed, then multiplied down the hierarchy with 16
-// characters in the lanes, and written once.
+// Poses of crowds, from clips to matrices, 16 characters at a time: sampled and blended with joints
+// of one character in the lanes of vectors into a small buffer, transposed, then multiplied down
+// the hierarchy with 16 characters in the lanes, and written once.
 //
 // Like those of pose_kernels.h, each kernel has a version for the machine's widest vectors and a
 // plain C++ one, `_scalar`, with bit-identical results: exact square roots and divisions, no fused
@@ -44,7 +44,7 @@ struct PoseRows {
     void resize(std::size_t count) {
         joints = count;
         stride = pose_stride(count);
-        values.resize(kRows * stride + kPoseBlock);  // vectors are read beyond the last joint
+        values.resize(kRows * stride + kPosePadding);  // vectors are read beyond the last joint
     }
     [[nodiscard]] Quat rotation(std::size_t joint) const {
         const float* const v = values.data() + joint;

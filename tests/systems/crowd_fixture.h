@@ -32,8 +32,10 @@ inline SkeletonData make_tree(std::size_t joints, std::uint64_t seed) {
     return skeleton;
 }
 
-/// Two seconds of smooth motion at 30 keys a second: three of four joints turn, the root moves.
-inline ClipData make_motion(const SkeletonData& skeleton, std::uint64_t seed) {
+/// Two seconds of smooth motion at 30 keys a second: all joints turn, or three of eight, and the
+/// root moves.
+inline ClipData
+make_motion(const SkeletonData& skeleton, std::uint64_t seed, bool all_joints = false) {
     Random random(seed, 0, name_hash("motion"), 0);
     ClipData clip;
     clip.name = "motion";
@@ -46,7 +48,7 @@ inline ClipData make_motion(const SkeletonData& skeleton, std::uint64_t seed) {
     std::vector<Vec3> axes;
     std::vector<float> phases;
     for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
-        if (j % 4 != 3) {
+        if (all_joints || j % 8 < 3) {
             sheet.rotating.push_back(static_cast<std::uint16_t>(j));
             axes.push_back(random.direction());
             phases.push_back(random.uniform(0.0f, 6.0f));

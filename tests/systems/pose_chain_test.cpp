@@ -57,10 +57,12 @@ std::vector<glm::dmat4> exact_joints(const TestCrowd& crowd, const CrowdCharacte
         const auto first = std::min(static_cast<std::size_t>(at), clip.frames - 2);
         const double u = at - static_cast<double>(first);
         for (std::size_t j = 0; j < joints; ++j) {
-            const float* const q = clip.rotations.constants.data() + j;
             const float* const t = clip.translations.constants.data() + j;
             const std::size_t stride = pose_stride(joints);
-            pose[j].rotation = glm::dquat(q[3 * stride], q[0], q[stride], q[2 * stride]);
+            if (!clip.rotations.constants.empty()) {
+                const float* const q = clip.rotations.constants.data() + j;
+                pose[j].rotation = glm::dquat(q[3 * stride], q[0], q[stride], q[2 * stride]);
+            }
             pose[j].translation = glm::dvec3(t[0], t[stride], t[2 * stride]);
         }
         for (const TrackRun& run : clip.rotations.runs) {
