@@ -9,6 +9,7 @@
 #include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/rotation_track_system.h"
@@ -97,6 +98,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
     systems.add<prepare_crowd_clips>(Animate, Both);
+    systems.add<add_ik_states>(Create, Both);
+    systems.add<update_ik_goals>(Animate, Both);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);

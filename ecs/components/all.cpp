@@ -23,6 +23,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/height_fog.h"
+#include "ecs/components/ik.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/input.h"
 #include "ecs/components/key_track.h"
@@ -151,6 +152,12 @@ void register_all_components() {
     register_component<WrinkleWeights>();
     register_component<WrinkleTrack>();
     register_component<JointAttachment>();
+    register_component<IkRig>();
+    register_component<IkGoals>();
+    register_component<LookAt>();
+    register_component<Gaze>();
+    register_component<ReachGoal>();
+    register_component<ReachState>();
     register_component<PathFollower>();
     register_component<RotationTrack>();
     register_component<KeyTrack>();

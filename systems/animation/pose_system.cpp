@@ -5,6 +5,7 @@
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/crowd_library.h"
+#include "systems/animation/ik/pose_ik.h"
 
 #include <algorithm>
 #include <map>
@@ -160,18 +161,57 @@ void finish_step(
     }
 }
 
-/// Samples the clip of one character that has a Pose.
+/// What changes the local poses of characters.
+class Modifiers {
+  public:
+    explicit Modifiers(const PoseModifiers& queries)
+        : queries_(queries),
+          any_(!queries.rigs.empty() || !queries.looks.empty() || !queries.reaches.empty()) {}
+
+    [[nodiscard]] bool has(Entity entity) const {
+        return any_
+               && (queries_.rigs.contains(entity) || queries_.looks.contains(entity)
+                   || queries_.reaches.contains(entity));
+    }
+
+    /// Applies what the character has, in this order. `last`: joint matrices of the last step,
+    /// empty in the first.
+    void apply(
+        Entity entity, const SkeletonData& skeleton, std::span<const Affine> last,
+        LocalPose& pose) const {
+        if (!any_) {
+            return;
+        }
+        if (const IkRig* const rig = queries_.rigs.find<const IkRig>(entity)) {
+            apply_ik_rig(skeleton, *rig, *queries_.rigs.find<const IkGoals>(entity), last, pose);
+        }
+        if (const ReachGoal* const goal = queries_.reaches.find<const ReachGoal>(entity)) {
+            apply_reach(skeleton, *goal, *queries_.reaches.find<const ReachState>(entity), pose);
+        }
+        if (const LookAt* const look = queries_.looks.find<const LookAt>(entity)) {
+            apply_look_at(skeleton, *look, *queries_.looks.find<const Gaze>(entity), pose);
+        }
+    }
+
+  private:
+    const PoseModifiers& queries_;
+    bool any_;
+};
+
+/// Samples the clip of one character that has a Pose, and applies its modifiers.
 void step_character(
-    const Assets& assets, const SkeletonData& skeleton, const Playback& playback, Pose& pose,
-    MorphWeights* morph) {
+    const Assets& assets, Entity entity, const SkeletonData& skeleton, const Playback& playback,
+    const Modifiers& modifiers, Pose& pose, MorphWeights* morph) {
     thread_local LocalPose scratch;  // reused between characters
     const bool is_new = begin_step(skeleton, pose, morph);
     const ClipPlayer* const player = playback.player;
     const ClipData* const clip =
         player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
-    evaluate_pose(
-        skeleton, clip, player != nullptr ? player->time : 0.0f, scratch, pose.joints,
+    sample_pose(
+        skeleton, clip, player != nullptr ? player->time : 0.0f, scratch,
         morph != nullptr ? std::span<float>(morph->weights) : std::span<float>());
+    modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
+    compute_joint_matrices(skeleton, scratch, pose.joints);
     finish_step(assets, skeleton, playback, is_new, pose, morph);
 }
 
@@ -211,8 +251,9 @@ class CrowdStepper {
   public:
     CrowdStepper(
         const CharacterSpans& all, const Assets& assets, const CrowdLibrary* library,
-        const Cuts& cuts, const FrameTime& time)
-        : all_(all), assets_(assets), library_(library), cuts_(cuts), time_(time) {}
+        const Cuts& cuts, const Modifiers& modifiers, const FrameTime& time)
+        : all_(all), assets_(assets), library_(library), cuts_(cuts), modifiers_(modifiers),
+          time_(time) {}
 
     void step(std::size_t begin, std::size_t end) const {
         thread_local std::vector<Due> due;
@@ -233,7 +274,9 @@ class CrowdStepper {
             }
             const CrowdClip* const clip = find_clip(i, playback, *skeleton);
             if (clip == nullptr) {
-                step_character(assets_, *skeleton, playback, pose, all_.morph(i));
+                step_character(
+                    assets_, all_.entities[i], *skeleton, playback, modifiers_, pose,
+                    all_.morph(i));
                 continue;
             }
             if (!due.empty() && due.back().skeleton != skeleton) {
@@ -261,7 +304,8 @@ class CrowdStepper {
 
     [[nodiscard]] const CrowdClip*
     find_clip(std::size_t i, const Playback& playback, const SkeletonData& skeleton) const {
-        if (library_ == nullptr || playback.player == nullptr || !all_.crowds[i].compressed) {
+        if (library_ == nullptr || playback.player == nullptr || !all_.crowds[i].compressed
+            || modifiers_.has(all_.entities[i])) {
             return nullptr;
         }
         const CrowdLibrary::Entry* const entry =
@@ -303,6 +347,7 @@ class CrowdStepper {
     const Assets& assets_;
     const CrowdLibrary* library_;
     const Cuts& cuts_;
+    const Modifiers& modifiers_;
     const FrameTime time_;
 };
 
@@ -369,9 +414,10 @@ void update_poses(
         AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
-    Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
-    OptionalRes<const CrowdLibrary> crowds, Commands commands) {
+    Query<const PoseCut> pose_cuts, PoseModifiers pose_modifiers, Res<const Assets> assets,
+    OptionalRes<const FrameTime> time, OptionalRes<const CrowdLibrary> crowds, Commands commands) {
     const Cuts cuts(teleports, parents, pose_cuts);
+    const Modifiers modifiers(pose_modifiers);
     const FrameTime now = time ? *time : FrameTime{.step = 0.0f};
     pose_cuts.each([&](Entity entity, const PoseCut&) { commands.remove<PoseCut>(entity); });
     characters.chunks(
@@ -382,7 +428,7 @@ void update_poses(
             const CharacterSpans all = {chunk.entities(), skeletons,    players, morph_players,
                                         crowd_poses,      crowd_states, morphs,  poses};
             if (!crowd_poses.empty()) {
-                const CrowdStepper stepper(all, *assets, crowds.get(), cuts, now);
+                const CrowdStepper stepper(all, *assets, crowds.get(), cuts, modifiers, now);
                 parallel_for(poses.size(), kCrowdGrain, [&](std::size_t begin, std::size_t end) {
                     stepper.step(begin, end);
                 });
@@ -394,8 +440,8 @@ void update_poses(
                         find_asset(assets->skeletons, skeletons[i].skeleton.index);
                     if (skeleton != nullptr) {
                         step_character(
-                            *assets, *skeleton, all.playback(i, cuts, now.step), poses[i],
-                            all.morph(i));
+                            *assets, all.entities[i], *skeleton, all.playback(i, cuts, now.step),
+                            modifiers, poses[i], all.morph(i));
                     }
                 }
             });
@@ -452,15 +498,21 @@ void add_morph_animations(
     });
 }
 
+void sample_pose(
+    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& pose,
+    std::span<float> weights) {
+    pose.translations = skeleton.rest.translations;
+    pose.rotations = skeleton.rest.rotations;
+    pose.scales = skeleton.rest.scales;
+    if (clip != nullptr && fits(*clip, pose.size(), weights.size())) {
+        sample_clip(*clip, time, pose, weights);
+    }
+}
+
 void evaluate_pose(
     const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& scratch,
     std::span<Affine> joints, std::span<float> weights) {
-    scratch.translations = skeleton.rest.translations;
-    scratch.rotations = skeleton.rest.rotations;
-    scratch.scales = skeleton.rest.scales;
-    if (clip != nullptr && fits(*clip, joints.size(), weights.size())) {
-        sample_clip(*clip, time, scratch, weights);
-    }
+    sample_pose(skeleton, clip, time, scratch, weights);
     compute_joint_matrices(skeleton, scratch, joints);
 }
 

@@ -13,6 +13,7 @@
 #include "ecs/resource.h"
 #include "ecs/system.h"
 #include "systems/animation/crowd_library.h"
+#include "systems/animation/pose_modifiers.h"
 
 namespace limn {
 
@@ -31,8 +32,9 @@ void add_poses(
     Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
     Res<const Assets> assets, Commands commands);
 
-/// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters. Those with a
-/// CrowdPose are posed together, and only when they are due (crowd_library.h).
+/// Samples the clips, applies the modifiers: writes Pose and MorphWeights. Allocates only for new
+/// characters. Those with a CrowdPose are posed together unless they have modifiers, and only when
+/// they are due (crowd_library.h).
 void update_poses(
     Query<
         const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
@@ -43,8 +45,8 @@ void update_poses(
         AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
         faces,
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
-    Query<const PoseCut> pose_cuts, Res<const Assets> assets, OptionalRes<const FrameTime> time,
-    OptionalRes<const CrowdLibrary> crowds, Commands commands);
+    Query<const PoseCut> pose_cuts, PoseModifiers modifiers, Res<const Assets> assets,
+    OptionalRes<const FrameTime> time, OptionalRes<const CrowdLibrary> crowds, Commands commands);
 
 /// Writes the Transform of attached entities, without shear, unless the character has no such
 /// joint. They jump where their joint does.
@@ -55,6 +57,11 @@ void update_attachments(
 /// Sets the morph targets that the animations control to the sum of their current weights.
 void add_morph_animations(
     const MorphPlayer& player, const std::vector<ClipData>& clips, std::span<float> weights);
+
+/// Local pose and morph weights of a skeleton in `clip`, otherwise like evaluate_pose().
+void sample_pose(
+    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& pose,
+    std::span<float> weights);
 
 /// Joint matrices and morph weights of a skeleton in `clip` at `time` [s]; the rest pose without a
 /// clip, or if the clip refers to missing joints or weights. `scratch` is reused between calls;

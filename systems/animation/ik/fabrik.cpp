@@ -1,6 +1,6 @@
 #include "systems/animation/ik/fabrik.h"
 
-#include "systems/animation/ik/joint_limits.h"
+#include "systems/animation/ik/ccd.h"
 #include "systems/animation/ik/turn_toward.h"
 
 #include <glm/geometric.hpp>
@@ -33,6 +33,13 @@ struct Reach {
         for (std::size_t i = 0; i < joints.size(); ++i) {
             lengths[i] = glm::distance(points[i], points[i + 1]);
         }
+    }
+
+    [[nodiscard]] bool has_hinges(const JointTree& tree) const {
+        return std::any_of(joints.begin(), joints.end(), [&](std::uint16_t joint) {
+            const AxisRange range = axes_of(tree, joint);
+            return range.first == range.last || tree.axes[range.first].kind != AxisKind::Free;
+        });
     }
 
     void read(const JointFrames& frames, const Effector& effector) {
@@ -85,10 +92,15 @@ IkResult solve_fabrik(
     reach.begin(tree, frames, effector);
     result.distance = glm::distance(reach.points.back(), goal);
     best = state;
+    const bool has_hinges = reach.has_hinges(tree);
     while (result.iterations < options.iterations && result.distance > options.tolerance) {
         ++result.iterations;
         reach.drag(goal);
         follow_points(tree, reach, effector, options.limits, frames, state);
+        if (has_hinges) {
+            solve_ccd(tree, effector, goal, {.passes = 1, .limits = options.limits}, state);
+            find_frames(tree, state, frames);
+        }
         reach.read(frames, effector);
         const float distance = glm::distance(reach.points.back(), goal);
         if (distance < result.distance) {

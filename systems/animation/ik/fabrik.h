@@ -7,7 +7,8 @@ namespace limn {
 // Forward and backward reaching inverse kinematics: positions of the joints are dragged along the
 // chain, from the goal to the base and back, each at its distance from the next one. Few cheap
 // iterations, and bends spread over the chain. On the way back joints with axes turn as far as
-// these and their limits allow.
+// these and their limits allow; since positions know nothing of axes, a pass of cyclic coordinate
+// descent follows in chains that have such joints.
 // After A. Aristidou, J. Lasenby, "FABRIK: A Fast, Iterative Solver for the Inverse Kinematics
 // Problem", 2011.
 // Techniques: char.ik-ccd

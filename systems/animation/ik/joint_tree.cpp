@@ -231,6 +231,16 @@ void set_local_rotation(
 
 JointTree make_joint_tree(const SkeletonData& skeleton, std::span<const std::uint16_t> joints) {
     JointTree tree;
+    make_joint_tree(skeleton, joints, tree);
+    return tree;
+}
+
+void make_joint_tree(
+    const SkeletonData& skeleton, std::span<const std::uint16_t> joints, JointTree& tree) {
+    tree.parents.clear();
+    tree.offsets.clear();
+    tree.rests.clear();
+    tree.axes.clear();
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const std::uint16_t joint = joints[i];
         const auto parent = std::find(joints.begin(), joints.begin() + i, skeleton.parents[joint]);
@@ -250,7 +260,6 @@ JointTree make_joint_tree(const SkeletonData& skeleton, std::span<const std::uin
             add_free_axes(tree);
         }
     }
-    return tree;
 }
 
 std::vector<std::uint16_t>

@@ -125,6 +125,9 @@ void set_local_rotation(
 /// joint without freedoms turns freely.
 [[nodiscard]] JointTree
 make_joint_tree(const SkeletonData& skeleton, std::span<const std::uint16_t> joints);
+/// The same, reusing the memory of `tree`.
+void make_joint_tree(
+    const SkeletonData& skeleton, std::span<const std::uint16_t> joints, JointTree& tree);
 
 /// The joints from the `bones`-th ancestor of `tip`, or the root, to `tip`, ascending.
 [[nodiscard]] std::vector<std::uint16_t>
