@@ -7,11 +7,13 @@
 #include "content/make/models/fur_strands.h"
 #include "content/make/models/hovercraft.h"
 #include "content/make/models/joined.h"
+#include "content/make/models/mannequin.h"
 #include "content/make/models/masonry.h"
 #include "content/make/models/plants.h"
 #include "content/make/models/projected.h"
 #include "content/make/models/refine_mesh.h"
 #include "content/make/models/retargeted.h"
+#include "content/make/models/robot_arm.h"
 #include "content/make/models/shapes.h"
 #include "content/make/models/simplify_mesh.h"
 #include "content/make/models/sweep.h"
@@ -73,6 +75,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<JoinedShape, make_joined>(
             "joined", "several meshes of the level as one, at rest"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
+        rigged_kind<MannequinShape, make_mannequin, make_mannequin_rig>(
+            "mannequin", "an artist's wooden figure that faces z, with skeleton, skin and a clip"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(
             "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),
@@ -82,6 +86,8 @@ std::span<const MeshKind> mesh_kinds() {
             "refined", "another mesh of the level with more triangles where its skin folds"),
         mesh_kind<RetargetedShape, make_retargeted>(
             "retargeted", "the surface of one face fitted onto another, with its motion"),
+        rigged_kind<RobotArmShape, make_robot_arm, make_robot_arm_rig>(
+            "robot_arm", "a part of a robot arm with seven axes, standing on y = 0"),
         mesh_kind<SimplifiedShape, make_simplified>(
             "simplified", "another mesh of the level with fewer triangles, its skin and shapes"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a sphere with longitude and latitude as uv"),
