@@ -5,6 +5,7 @@ namespace limn::bench {
 void add_clip_rows(CharacterBench& bench);
 void add_chain_rows(CharacterBench& bench);
 void add_vertex_rows(CharacterBench& bench);
+void add_ik_rows(CharacterBench& bench);
 void add_memory_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
 
@@ -13,6 +14,7 @@ std::span<const CharacterPart> character_parts() {
         {"clips", add_clip_rows},       // 1 .. 5: sampling, blending, joint matrices
         {"chain", add_chain_rows},      // 6 .. 8: all of it in one pass
         {"vertices", add_vertex_rows},  // 9
+        {"ik", add_ik_rows},            // 10 .. 12
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
     };
