@@ -9,6 +9,7 @@
 #include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
 #include "systems/animation/pose_system.h"
@@ -99,6 +100,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<advance_clips>(Animate);
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
+    systems.add<add_foot_contacts>(Create, Both);
+    systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
@@ -190,6 +193,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<WeatherState>(world);
     resource_or_default<ParticleObstacles>(world);
     resource_or_default<StepJumps>(world);
+    resource_or_default<WalkableMeshes>(world);
     resource_or_default<CrowdLibrary>(world);
     return resource_or_default<FrameTime>(world);
 }

@@ -15,6 +15,7 @@
 #include "ecs/components/deformers.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/foot_plant.h"
 #include "ecs/components/force_field.h"
 #include "ecs/components/framing.h"
 #include "ecs/components/fur.h"
@@ -155,6 +156,9 @@ void register_all_components() {
     register_component<IkRig>();
     register_component<IkGoals>();
     register_component<LookAt>();
+    register_component<Walkable>();
+    register_component<FootPlant>();
+    register_component<FootContacts>();
     register_component<Gaze>();
     register_component<ReachGoal>();
     register_component<ReachState>();

@@ -5,6 +5,7 @@
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/crowd_library.h"
+#include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
 
 #include <algorithm>
@@ -165,13 +166,14 @@ void finish_step(
 class Modifiers {
   public:
     explicit Modifiers(const PoseModifiers& queries)
-        : queries_(queries),
-          any_(!queries.rigs.empty() || !queries.looks.empty() || !queries.reaches.empty()) {}
+        : queries_(queries), any_(
+                                 !queries.plants.empty() || !queries.rigs.empty()
+                                 || !queries.looks.empty() || !queries.reaches.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return any_
-               && (queries_.rigs.contains(entity) || queries_.looks.contains(entity)
-                   || queries_.reaches.contains(entity));
+               && (queries_.plants.contains(entity) || queries_.rigs.contains(entity)
+                   || queries_.looks.contains(entity) || queries_.reaches.contains(entity));
     }
 
     /// Applies what the character has, in this order. `last`: joint matrices of the last step,
@@ -181,6 +183,10 @@ class Modifiers {
         LocalPose& pose) const {
         if (!any_) {
             return;
+        }
+        if (const FootPlant* const plant = queries_.plants.find<const FootPlant>(entity)) {
+            const FootContacts* const contacts = queries_.plants.find<const FootContacts>(entity);
+            apply_foot_plant(skeleton, *plant, *contacts, pose);
         }
         if (const IkRig* const rig = queries_.rigs.find<const IkRig>(entity)) {
             apply_ik_rig(skeleton, *rig, *queries_.rigs.find<const IkGoals>(entity), last, pose);

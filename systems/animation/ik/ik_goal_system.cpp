@@ -2,11 +2,12 @@
 
 #include "ecs/base/rotation.h"
 #include "ecs/components/humanoid.h"
+#include "systems/animation/ik/joint_tree.h"
 #include "systems/animation/ik/look_at.h"
+#include "systems/animation/ik/placements.h"
 #include "systems/animation/ik/pose_ik.h"
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,34 +19,6 @@ namespace limn {
 namespace {
 
 constexpr std::uint16_t kNoJoint = 0xffff;
-
-/// World matrices from current Transforms.
-class Placements {
-  public:
-    Placements(const Query<const Transform>& transforms, const Query<const Parent>& parents)
-        : transforms_(transforms), parents_(parents) {}
-
-    [[nodiscard]] bool has(Entity entity) const { return transforms_.contains(entity); }
-
-    [[nodiscard]] Affine world(Entity entity) const {
-        Affine matrix;
-        while (const Transform* const transform = transforms_.find<const Transform>(entity)) {
-            const Affine local =
-                affine_from(transform->position, transform->rotation, transform->scale);
-            matrix = local * matrix;
-            const Parent* const parent = parents_.find<const Parent>(entity);
-            if (parent == nullptr) {
-                break;
-            }
-            entity = parent->entity;
-        }
-        return matrix;
-    }
-
-  private:
-    const Query<const Transform>& transforms_;
-    const Query<const Parent>& parents_;
-};
 
 /// A point of a goal, or of the character itself, in the character's space.
 struct GoalPoint {
@@ -61,11 +34,11 @@ find_point(const Placements& placements, Entity character, Entity goal, const Ve
     if (!placements.has(goal)) {  // destroyed
         return {};
     }
-    const Mat4 world = to_mat4(placements.world(character));
-    if (std::abs(glm::determinant(world)) < 1e-20f) {
+    Affine character_from_world;
+    if (!find_inverse(placements.world(character), character_from_world)) {
         return {};
     }
-    const Affine local = to_affine(glm::inverse(world)) * placements.world(goal);
+    const Affine local = character_from_world * placements.world(goal);
     const auto& row = local.row;
     const Mat3 axes(
         Vec3(row[0].x, row[1].x, row[2].x), Vec3(row[0].y, row[1].y, row[2].y),
