@@ -57,7 +57,7 @@ LIMN_FIELDS(IkChain) {
     LIMN_FIELD(offset, "point that reaches, in the tip's space", "m");
     LIMN_FIELD(goal, "entity to reach, by name; none: a point of the character's space");
     LIMN_FIELD(position, "point to reach, in the goal's space", "m");
-    LIMN_FIELD(orient, "the tip also takes the rotation of the goal; jacobian only");
+    LIMN_FIELD(orient, "the tip also takes the rotation of the goal; two_link, jacobian, hybrid");
     LIMN_FIELD(
         weight, "from the animated pose, 0, to the goal, 1; penalty: of this goal", "", 0, 100);
     LIMN_FIELD(iterations, "per step; penalty and hybrid: the largest of all chains", "", 0, 256);

@@ -285,6 +285,7 @@ TEST_CASE(
         CHECK(double(reach_weight(goal, time)) == near(weight).scale(1));
     };
     is(0.4, 0);
+    is(0.625, 0.15625);  // 3 u^2 - 2 u^3
     is(0.75, 0.5);
     is(1, 1);
     is(1.25, 1);

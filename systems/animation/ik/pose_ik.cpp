@@ -20,7 +20,10 @@ namespace limn {
 namespace {
 
 constexpr std::uint16_t kMissingJoint = 0xffff;
-constexpr float kSpineStiffness = 0.5f;  // of joints without freedoms in a hybrid chain; by eye
+// Of joints without freedoms in hybrid chains, and of the root; by eye.
+constexpr float kSpineStiffness = 0.25f;
+constexpr float kRootStiffness = 1.0f;
+constexpr float kHybridStiffness = 2e-3f;  // factor on both [m^2/rad^2]
 
 /// A part of a skeleton as a tree; buffers are reused.
 struct BodyTree {
@@ -196,7 +199,8 @@ void solve_hybrid_chains(
     body.read(skeleton, pose);
     JointTree& tree = body.tree;
     for (JointAxis& axis : tree.axes) {
-        axis.stiffness = axis.kind == AxisKind::Free ? kSpineStiffness : axis.stiffness;
+        const float free = axis.joint == 0 ? kRootStiffness : kSpineStiffness;
+        axis.stiffness = axis.kind == AxisKind::Free ? free : axis.stiffness;
     }
     for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0)}) {
         tree.axes.insert(
@@ -205,7 +209,8 @@ void solve_hybrid_chains(
     }
     body.state.values.insert(body.state.values.begin(), 3, 0.0f);
     limbs.clear();
-    HybridOptions options = {.spine = {.iterations = 0}, .limits = false};
+    HybridOptions options = {
+        .spine = {.iterations = 0, .stiffness = kHybridStiffness}, .limits = false};
     for (std::size_t i = 0; i < rig.chains.size(); ++i) {
         const IkChain& chain = rig.chains[i];
         if (chain.solver != IkSolver::Hybrid || !can_reach(rig, goals, i)) {
@@ -224,6 +229,12 @@ void solve_hybrid_chains(
     pose.translations[body.joints[0]] +=
         tree.base_rotation * tree.rests[0] * Vec3(moved[0], moved[1], moved[2]);
     body.write(1, pose);
+    for (std::size_t i = 0; i < rig.chains.size(); ++i) {
+        const IkChain& chain = rig.chains[i];
+        if (chain.solver == IkSolver::Hybrid && chain.orient && can_reach(rig, goals, i)) {
+            set_joint_rotation(skeleton, goals.tips[i], goals.rotations[i], 1, pose);
+        }
+    }
 }
 
 }  // namespace
