@@ -5,6 +5,7 @@
 #include "content/load/level/level_list.h"
 #include "content/load/level/level_load.h"
 #include "content/load/level/scene_warnings.h"
+#include "content/load/motion/motion_scene.h"
 #include "content/load/obj/obj_scene.h"
 #include "content/load/scene_bounds.h"
 #include "content/make/models/fur_coordinates.h"
@@ -57,7 +58,7 @@ std::string scenes_in(const std::string& folder) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
         const std::string path = entry.path().string();
-        if (ends_with_any(path, {".gltf", ".glb", ".obj", ".level.json"})) {
+        if (ends_with_any(path, {".gltf", ".glb", ".obj", ".bvh", ".level.json"})) {
             found.push_back(path);
         }
     }
@@ -140,14 +141,18 @@ void move_to_origin(World& world, const std::vector<Entity>& roots) {
 Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
-    const bool is_obj = ends_with_any(path, {".obj"});
+    const bool is_gltf = ends_with_any(path, {".gltf", ".glb"});
     const LoadOptions& load = options.model.load;
     const std::string& variant = options.model.variant;
-    if (is_obj && !variant.empty()) {
-        return fail("{}: found an OBJ file, expected glTF with --variant", path);
+    if (!is_gltf && !variant.empty()) {
+        return fail(
+            "{}: found {} file, expected glTF with --variant", path,
+            ends_with_any(path, {".bvh"}) ? "a BVH" : "an OBJ");
     }
-    GltfScene model =
-        LIMN_TRY(is_obj ? load_obj_scene(path, {}, load) : load_gltf(path, {}, load, variant));
+    GltfScene model = LIMN_TRY(
+        is_gltf                         ? load_gltf(path, {}, load, variant)
+        : ends_with_any(path, {".bvh"}) ? load_bvh_scene(path, {}, load)
+                                        : load_obj_scene(path, {}, load));
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
@@ -157,7 +162,7 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
     const std::vector<Entity> roots =
         spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots;
     for (const Entity root : roots) {
-        if (!is_obj) {  // which levels cannot use
+        if (is_gltf) {  // levels can use no other
             world.add(root, GltfSource{file, variant});
         }
     }
@@ -214,12 +219,13 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
     for (const char* const other : {".fbx", ".stl", ".ply", ".dae", ".blend", ".usd", ".usdz"}) {
         if (ends_with_any(scene, {other})) {
             return fail(
-                "{}: format not supported, expected a level, .gltf, .glb or .obj (Blender and most "
+                "{}: format not supported, expected a level, .gltf, .glb, .obj or .bvh (Blender "
+                "and most "
                 "other tools export glTF)",
                 scene);
         }
     }
-    if (ends_with_any(scene, {".gltf", ".glb", ".obj"})) {
+    if (ends_with_any(scene, {".gltf", ".glb", ".obj", ".bvh"})) {
         if (!options.show.technique.empty()) {
             return fail("{}: found a model, expected a level with --show", scene);
         }

@@ -17,8 +17,8 @@ namespace limn {
 class MadeAssets;
 class World;
 
-// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a model (glTF
-// or Wavefront OBJ), for which it sets up a view (model_view.h).
+// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a model
+// (glTF, Wavefront OBJ, or BVH as a figure of bones), for which it sets up a view (model_view.h).
 
 struct SceneOptions {
     std::optional<std::uint64_t> seed = {};  ///< overrides the level's

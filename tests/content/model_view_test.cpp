@@ -454,7 +454,7 @@ TEST_CASE("model view: formats that are not read are named, with what is") {
         REQUIRE_FALSE(scene.ok());
         CHECK(
             scene.error().message.find(
-                "format not supported, expected a level, .gltf, .glb or .obj")
+                "format not supported, expected a level, .gltf, .glb, .obj or .bvh")
             != std::string::npos);
     }
     const Result<LoadedScene> level =

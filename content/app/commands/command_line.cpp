@@ -37,7 +37,7 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
-constexpr const char* kSceneDoc = "level name, .level.json, .gltf, .glb or .obj";
+constexpr const char* kSceneDoc = "level name, .level.json, .gltf, .glb, .obj or .bvh";
 
 /// A command, and the function that runs it once its options are parsed.
 struct Command {
@@ -465,7 +465,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
 Command add_info(CLI::App& program, std::string& file) {
     CLI::App* app = program.add_subcommand(
         "info", "Print the contents of a file; for a scene, the number of shader programs, too");
-    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
+    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .bvh, .png, .exr ...")
         ->type_name("FILE")
         ->required();
     app->footer(
@@ -476,18 +476,25 @@ Command add_info(CLI::App& program, std::string& file) {
 
 Command add_import(CLI::App& program, ImportOptions& options) {
     CLI::App* app = program.add_subcommand("import", "Convert other formats to glTF");
-    app->add_option("kind", options.kind, "of the data: ict-facekit, makehuman or markers")
+    app->add_option("kind", options.kind, "of the data: bvh, ict-facekit, makehuman or markers")
         ->type_name("KIND")
         ->required()
-        ->check(CLI::IsMember({"ict-facekit", "makehuman", "markers"}));
-    app->add_option("in", options.in, "folder with the data, or the .trc file of markers")
+        ->check(CLI::IsMember({"bvh", "ict-facekit", "makehuman", "markers"}));
+    app->add_option(
+           "in", options.in,
+           "folder with the data, the .bvh file of motion or the .trc file of markers")
         ->type_name("IN")
         ->required();
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
     app->add_flag(
         "--head", options.head,
         "markers only: they are named after those of the built-in head, see below");
+    add_assignments(*app, options.assignments, "--set", "bvh only: scale, up, rate or positions");
     app->footer(
+        "bvh: recorded motion, as a skeleton with a clip and a figure of bones. Settings:\n"
+        "scale [m per unit of the file; by default one that makes a person 1.65 m high],\n"
+        "up [y, z; by default from the feet to the hips], rate [keys per second; by default those\n"
+        "of the file], positions [add, replace: what channels of positions do to the offset].\n"
         "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
         "FaceXModel;\n"
         "where one half of an expression is missing, the other is mirrored.\n"
@@ -504,6 +511,7 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "midline; the recorded face may be another, and markers that it lacks follow their\n"
         "neighbors.\n\n"
         "Examples:\n"
+        "  limn import bvh walk.bvh -o walk.glb --set scale=0.01 --set up=z\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
         "  limn import markers take.trc -o take.glb\n"

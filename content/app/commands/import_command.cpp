@@ -1,10 +1,12 @@
 #include "content/app/commands/import_command.h"
 
+#include "content/app/commands/bake_recipe.h"
 #include "content/app/commands/progress.h"
 #include "content/load/faces/ict_facekit.h"
 #include "content/load/faces/makehuman.h"
 #include "content/load/faces/marker_import.h"
 #include "content/load/gltf/gltf_write.h"
+#include "content/load/motion/motion_scene.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -12,6 +14,27 @@
 #include <memory>
 
 namespace limn {
+namespace {
+
+Status import_bvh(const ImportOptions& options) {
+    BvhImport import;
+    LIMN_TRY(set_recipe_fields(options.assignments, import));
+    const GltfScene scene = LIMN_TRY(load_bvh_scene(options.in, import));
+    LIMN_TRY(save_glb(options.out, scene));
+    const std::vector<Affine> rest = find_rest_joints(scene.skeleton);
+    Bounds box;
+    for (std::size_t j = 1; j < rest.size(); ++j) {
+        grow(box, transform_point(rest[j], Vec3(0)));
+    }
+    const bool has_clip = !scene.clips.empty();
+    fmt::print(
+        "{}: {} joints, {:.2f} m high, {} keys, {:.2f} s\n", options.out, rest.size() - 1,
+        box.max.y - box.min.y, has_clip ? scene.clips[0].sheets[0].times.size() : 0,
+        has_clip ? scene.clips[0].duration : 0.0f);
+    return Done{};
+}
+
+}  // namespace
 
 Status run_import(const ImportOptions& options) {
     if (options.head && options.kind != "markers") {
@@ -19,6 +42,12 @@ Status run_import(const ImportOptions& options) {
     }
     if (!options.out.ends_with(".glb")) {
         return fail("{}: expected a file name ending in .glb", options.out);
+    }
+    if (options.kind == "bvh") {
+        return import_bvh(options);
+    }
+    if (!options.assignments.empty()) {
+        return fail("--set: found {}, expected bvh", options.kind);
     }
     std::unique_ptr<Progress> progress;
     const ImportProgress show = [&](int done, int total) {

@@ -1,18 +1,23 @@
 #pragma once
 
+#include "content/app/commands/command_values.h"
 #include "ecs/base/result.h"
 
 #include <string>
+#include <vector>
 
 namespace limn {
 
 // Shown by `limn import markers take.trc -o take.glb`: face.head-stabilise, face.mocap-drive
+// Shown by `limn import bvh walk.bvh -o walk.glb`: char.bvh-format, char.skeleton-hierarchy
+// Shown by `limn import bvh walk.bvh -o walk.glb --set rate=100`: char.mocap-rate
 
 struct ImportOptions {
-    std::string kind;   ///< ict-facekit, makehuman or markers
-    std::string in;     ///< folder, or the file of markers
+    std::string kind;   ///< bvh, ict-facekit, makehuman or markers
+    std::string in;     ///< folder, or the file of motion or markers
     std::string out;    ///< .glb
     bool head = false;  ///< markers are named after those of the built-in head
+    std::vector<Assignment> assignments = {};  ///< FIELD=VALUE of BvhImport
 };
 
 /// `limn import`: converts other formats to a .glb, written completely or not at all. Progress on a

@@ -1,4 +1,5 @@
 #include "content/load/gltf/gltf_document.h"
+#include "content/load/gltf/gltf_marks.h"
 #include "ecs/base/rotation.h"
 #include "ecs/base/text.h"
 
@@ -390,6 +391,7 @@ class AnimationBuilder {
                 clip.sheets.push_back(make_sheet(group));
                 clip.duration = std::max(clip.duration, group.times.back());
             }
+            read_clip_marks(document_, i, scene_.skeleton, clip);
             if (Status status =
                     check_clip(clip, scene_.skeleton.joints.size(), scene_.morph_weights.size());
                 !status) {

@@ -99,6 +99,26 @@ std::string in_capitals(std::string_view name) {
     return capitals;
 }
 
+/// Column `column` of rows with `width` values.
+template <typename T>
+std::vector<T> column_of(const std::vector<T>& rows, std::size_t width, std::size_t column) {
+    std::vector<T> values;
+    for (std::size_t i = column; i < rows.size(); i += width) {
+        values.push_back(rows[i]);
+    }
+    return values;
+}
+
+/// The same in glTF's order of components, whatever GLM's is.
+std::vector<Vec4>
+quaternions_of(const std::vector<Quat>& rows, std::size_t width, std::size_t column) {
+    std::vector<Vec4> values;
+    for (const Quat& q : column_of(rows, width, column)) {
+        values.emplace_back(q.x, q.y, q.z, q.w);
+    }
+    return values;
+}
+
 bool is_region_name(std::string_view name) {
     return !name.empty()
            && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos;
@@ -414,27 +434,77 @@ class GlbWriter {
         tinygltf::Animation clip;
         clip.name = source.name;
         for (const ClipSheet& sheet : source.sheets) {
-            if (sheet.interpolation != Interpolation::Linear || !sheet.rotating.empty()
-                || !sheet.scaling.empty() || !sheet.morphing.empty() || sheet.times.empty()) {
+            if (!sheet.morphing.empty() || sheet.times.empty()) {
                 return fail(
-                    "{}: found other keys in the clip {}, expected linear translations only",
-                    scene_.name, in_quotes(source.name));
+                    "{}: found {} in the clip {}, expected keys of joints only", scene_.name,
+                    sheet.times.empty() ? "a sheet without keys" : "morph weights",
+                    in_quotes(source.name));
             }
+            const std::size_t first = clip.samplers.size();
             const int times = append_times(model_, sheet.times);
-            const std::size_t joints = sheet.translating.size();
-            for (std::size_t j = 0; j < joints; ++j) {
-                std::vector<Vec3> positions;
-                for (std::size_t k = 0; k < sheet.times.size(); ++k) {
-                    positions.push_back(sheet.translations[k * joints + j]);
-                }
-                const int node = LIMN_TRY(find_joint(sheet.translating[j], "clip", source.name));
-                append_channel(clip, node, "translation", times, store(positions));
+            LIMN_TRY(
+                add_channels(clip, source.name, "rotation", sheet.rotating, times, [&](auto j) {
+                    return store(quaternions_of(sheet.rotations, sheet.rotating.size(), j));
+                }));
+            LIMN_TRY(add_channels(
+                clip, source.name, "translation", sheet.translating, times, [&](auto j) {
+                    return store(column_of(sheet.translations, sheet.translating.size(), j));
+                }));
+            LIMN_TRY(add_channels(clip, source.name, "scale", sheet.scaling, times, [&](auto j) {
+                return store(column_of(sheet.scales, sheet.scaling.size(), j));
+            }));
+            for (std::size_t i = first; i < clip.samplers.size(); ++i) {
+                clip.samplers[i].interpolation = sheet.interpolation == Interpolation::Step ? "STEP"
+                                                 : sheet.interpolation == Interpolation::Cubic
+                                                     ? "CUBICSPLINE"
+                                                     : "LINEAR";
             }
         }
+        add_marks(source, clip);
         if (!clip.channels.empty()) {  // without, all animations become null
             model_.animations.push_back(std::move(clip));
         }
         return Done{};
+    }
+
+    /// A channel per joint; store_values(j) is the accessor of the j-th.
+    template <typename StoreValues>
+    Status add_channels(
+        tinygltf::Animation& clip, const std::string& name, const char* path,
+        const std::vector<std::uint16_t>& joints, int times, StoreValues&& store_values) {
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const int node = LIMN_TRY(find_joint(joints[j], "clip", name));
+            append_channel(clip, node, path, times, store_values(j));
+        }
+        return Done{};
+    }
+
+    /// Contacts and events, see read_clip_marks.
+    void add_marks(const ClipData& source, tinygltf::Animation& clip) const {
+        const auto number = [](float value) { return tinygltf::Value(static_cast<double>(value)); };
+        tinygltf::Value::Object limn;
+        tinygltf::Value::Array contacts;
+        for (const ClipContact& contact : source.contacts) {
+            contacts.emplace_back(tinygltf::Value::Object{
+                {"joint", tinygltf::Value(scene_.skeleton.joints[contact.joint])},
+                {"begin", number(contact.begin)},
+                {"end", number(contact.end)}});
+        }
+        tinygltf::Value::Array events;
+        for (const ClipEvent& event : source.events) {
+            events.emplace_back(tinygltf::Value::Object{
+                {"name", tinygltf::Value(event.name)}, {"time", number(event.time)}});
+        }
+        if (!contacts.empty()) {
+            limn.emplace("contacts", std::move(contacts));
+        }
+        if (!events.empty()) {
+            limn.emplace("events", std::move(events));
+        }
+        if (!limn.empty()) {
+            clip.extras = tinygltf::Value(
+                tinygltf::Value::Object{{"limn", tinygltf::Value(std::move(limn))}});
+        }
     }
 
     Status add_skin(const SkinData& source) {
