@@ -72,6 +72,34 @@ echo '{"face": "face.glb", "degree": 1, "size": 16, "poses": [{"image": "a.png",
     done
 } >"$folder/take.trc"
 
+# A person of ten joints that takes a step, as BVH and HTR, and markers of the body.
+leg() {
+    printf 'JOINT %sUpLeg\n{\nOFFSET %s -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n' "$1" "$2"
+    printf 'JOINT %sLeg\n{\nOFFSET 0 -45 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n' "$1"
+    printf 'JOINT %sFoot\n{\nOFFSET 0 -43 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n' "$1"
+    printf 'End Site\n{\nOFFSET 0 -7 15\n}\n}\n}\n}\n'
+}
+{
+    printf 'HIERARCHY\nROOT Hips\n{\nOFFSET 0 100 0\n'
+    printf 'CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n'
+    leg Left 10
+    leg Right -10
+    printf 'JOINT Spine\n{\nOFFSET 0 20 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n'
+    printf 'JOINT Head\n{\nOFFSET 0 40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n}\n}\n}\n'
+    printf 'MOTION\nFrames: 30\nFrame Time: 0.033333\n'
+    for frame in {0..29}; do
+        printf '0 98 %s 0 0 0 0 %s 0 0 10 0 0 0 0 0 %s 0 0 10 0 0 0 0 0 0 0 0 0 0\n' $((2 * frame)) $((15 - frame)) $((frame - 15))
+    done
+} >"$folder/walk.bvh"
+cp "$folder/walk.bvh" "$folder/take.bvh"
+printf '[Header]\nDataFrameRate 30\n[SegmentNames&Hierarchy]\nHips GLOBAL\nSpine Hips\n[BasePosition]\nHips 0 900 0 0 0 0 9\nSpine 0 200 0 0 0 0 9
+[Hips]\n1 0 0 0 0 0 0 1\n2 0 0 9 0 5 0 1\n[Spine]\n1 0 0 0 9 0 0 1\n2 0 0 0 8 0 0 1\n[EndOfFile]\n' >"$folder/take.htr"
+for name in walk.glb person.glb body.glb; do
+    "$limn" import bvh "$folder/walk.bvh" -o "$folder/$name" >/dev/null || exit 1
+done
+echo '{"markers": [{"marker": "head1", "joint": "Head", "at": [-0.07, 1.6, 0]}, {"marker": "head2", "joint": "Head",
+    "at": [0.07, 1.6, 0]}, {"marker": "head3", "joint": "Head", "at": [0, 1.65, -0.05]}]}' >"$folder/markers.json"
+
 if [ -d ../shared/assets ]; then
     (cd "$folder" && "$limn" import ict-facekit ICT-FaceKit -o face.glb \
         && "$limn" speak "exactly one" --face face.glb -o one.glb --record clock.json) >/dev/null || exit 1

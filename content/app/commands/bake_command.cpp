@@ -1,6 +1,7 @@
 #include "content/app/commands/bake_command.h"
 
 #include "content/app/commands/bake_detail.h"
+#include "content/app/commands/bake_motion.h"
 #include "content/app/commands/bake_photometric.h"
 #include "content/app/commands/bake_recipe.h"
 #include "content/app/commands/bake_relief.h"
@@ -143,11 +144,14 @@ constexpr BakeKind kKinds[] = {
      bake_detail_maps},
     {"double-depth", "relief map of a mesh with front and back", bake_double_depth_map},
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
+    {"motion", "recorded motion without noise, gaps and jumps, with contacts of the feet",
+     bake_motion, true},
     {"normal", "normal map of a height map or a mesh", bake_normal_map},
     {"odd", "what each view ray sees of a tile, by position and direction", bake_odd_map},
     {"photometric", "normals and reflectance from photographs, each under one light",
      bake_photometric},
     {"relief", "normals and depths of a height map or a mesh", bake_relief_map},
+    {"retarget", "a motion for another body", bake_retarget, true},
     {"strain_model", "wrinkles of captured normal maps, as a function of the strain of a face",
      bake_strain_model},
 };
@@ -161,6 +165,15 @@ std::span<const BakeKind> bake_kinds() {
 Status run_bake(const BakeOptions& options) {
     const BakeKind* const kind = find_kind(bake_kinds(), options.kind);
     LIMN_CHECK(kind != nullptr);
+    const bool is_motion = options.out.ends_with(".glb") || options.out.ends_with(".bvh");
+    if (is_motion != kind->makes_motion) {
+        return fail(
+            "{}: expected a file name ending in {} for {}", options.out,
+            kind->makes_motion ? ".glb or .bvh" : ".png or .exr", kind->name);
+    }
+    if (!options.body.empty() && !kind->makes_motion) {
+        return fail("{}: found a second file, expected one for {}", options.body, kind->name);
+    }
     return kind->run(options);
 }
 

@@ -371,13 +371,14 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
 }
 
 Command add_bake(CLI::App& program, BakeOptions& options) {
-    CLI::App* app = program.add_subcommand("bake", "Make maps from meshes, heights or photographs");
+    CLI::App* app = program.add_subcommand(
+        "bake", "Make maps from meshes, heights or photographs, and clips from recorded motion");
     std::string kinds;
     for (const BakeKind& kind : bake_kinds()) {
         kinds += fmt::format("  {:<12} {}\n", kind.name, kind.doc);
     }
     add_parsed(
-        *app, "kind", "of maps", options.kind,
+        *app, "kind", "of maps or motion", options.kind,
         [](const std::string& text) {
             return find_kind(bake_kinds(), text) != nullptr
                        ? Result<std::string>(text)
@@ -389,12 +390,18 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         ->required();
     app->add_option(
            "in", options.in,
-           ".gltf, .glb or .obj; or an image of heights; .json for photometric and strain_model")
+           ".gltf, .glb or .obj; or an image of heights; .json for photometric and strain_model; "
+           ".bvh, .htr, .trc or .glb for motion and retarget")
         ->type_name("IN")
         ->required();
+    app->add_option("body", options.body, "retarget, and motion of .trc: a file with a skeleton")
+        ->type_name("BODY");
     add_parsed(
-        *app, "-o,--out", "NAME.png or NAME.exr", options.out,
+        *app, "-o,--out", "NAME.png or NAME.exr; NAME.glb or NAME.bvh of motion", options.out,
         [](const std::string& text) {
+            if (text.ends_with(".glb") || text.ends_with(".bvh")) {
+                return Result<std::string>(text);
+            }
             const Result<ImageFileKind> kind = image_file_kind(text);
             return kind ? Result<std::string>(text) : kind.error();
         })
@@ -449,8 +456,20 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "...]}}\n"
         "with normal maps of facial expressions, and writes NAME.exr, the wrinkle texture of a\n"
         "wrinkle_surface with the method model.\n"
+        "motion cleans up a recorded motion. Its recipe: clip, rate, cutoff [Hz, against noise],\n"
+        "travel (moves a walk on the spot), loop, loop_min, loop_max, contacts, contact_speed,\n"
+        "contact_height. Of markers, a .trc file, it makes the motion of BODY; the recipe says\n"
+        "  {{\"markers\": [{{\"marker\": \"LASI\", \"joint\": \"Hips\", \"at\": [0.1, 1, 0.1]}}, "
+        "...]}}\n"
+        "with positions in the rest pose; swap_margin and max_gap are for labels and gaps.\n"
+        "retarget gives a motion to BODY, whose joints have equal names or are the same parts of "
+        "a\n"
+        "person; planted feet stay. Its recipe: clip, pin_feet, fade, hands, travel.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
+        "  limn bake motion walk.bvh -o walk.glb --set cutoff=8 --set travel=true --set loop=true\n"
+        "  limn bake motion walk.glb -o walk.bvh\n"
+        "  limn bake retarget walk.bvh person.glb -o walking.glb\n"
         "  limn bake normal heights.png -o normal.png --set depth=0.02\n"
         "  limn bake cone model.glb -o cones.png --set face=top --set size=64\n"
         "  limn bake detail low.obj --high high.obj -o statue.png --set distance=0.05\n"
