@@ -1,6 +1,7 @@
 #include "content/load/gltf/gltf_load.h"
 #include "content/load/motion/bvh_file.h"
 #include "tests/app/run_program.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
@@ -12,6 +13,7 @@
 namespace limn::bake_motion_test {
 
 using test::count_lines;
+using test::near;
 using test::ProgramRun;
 using test::run_limn;
 using test::TemporaryFolder;
@@ -93,7 +95,7 @@ TEST_CASE(
     const BvhFile bvh = *load_bvh(folder.file("clean.bvh"));
     CHECK(bvh.frames == 26);
     CHECK(bvh.joints.size() == 11);
-    CHECK(bvh.values[bvh.channels() * 25 + 2] == doctest::Approx(100).epsilon(1e-4));
+    CHECK(bvh.values[bvh.channels() * 25 + 2] == near(100).epsilon(1e-4));
     run = run_limn(
         folder, {"bake", "motion", "clean.bvh", "-o", "still.glb", "--set", "travel=true"});
     CHECK(run.exit_code == 0);
@@ -130,7 +132,7 @@ TEST_CASE(
     CHECK(run.exit_code == 0);
     CHECK(run.out.find("residual 0.0 mm") != std::string::npos);
     const BvhFile bvh = *load_bvh(folder.file("take.bvh"));
-    CHECK(bvh.values[bvh.channels() + 2] == doctest::Approx(100).epsilon(1e-4));
+    CHECK(bvh.values[bvh.channels() + 2] == near(100).epsilon(1e-4));
     run = run_limn(folder, {"bake", "motion", "take.trc", "-o", "take.bvh"});
     check_fails(run, 1, "take.trc: found no body, expected BODY");
     write_text(folder.file("markers.json"), R"({"markers": [{"marker": "d", "joint": "Hips"}]})");

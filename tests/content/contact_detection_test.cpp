@@ -1,8 +1,8 @@
+#include "bench/oracles/walker_motion.h"
 #include "content/bake/motion/contact_detection.h"
 #include "content/bake/motion/flight_curve.h"
 #include "content/bake/motion/loop_finding.h"
 #include "ecs/base/rng.h"
-#include "tests/content/walker_motion.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
@@ -24,7 +24,7 @@ std::vector<std::uint16_t> ankles_of(const SkeletonData& skeleton) {
     return {body[BodyPart::LeftFoot], body[BodyPart::RightFoot]};
 }
 
-std::vector<ClipContact> contacts_of(const test::Walk& walk, float noise = 0) {
+std::vector<ClipContact> contacts_of(const oracle::Walk& walk, float noise = 0) {
     MotionFrames frames = sample_frames(walk.motion, 60);
     Random random(1, 2, 3, 4);
     for (std::size_t f = 0; f < frames.frames() && noise > 0; ++f) {
@@ -35,17 +35,64 @@ std::vector<ClipContact> contacts_of(const test::Walk& walk, float noise = 0) {
     return detect_contacts(walk.motion.skeleton, frames, ankles_of(walk.motion.skeleton), sharp);
 }
 
+/// A foot on its own, at these heights and speeds along z; 60 frames per second.
+std::vector<ClipContact> contacts_of_foot(
+    const std::vector<float>& heights, const std::vector<float>& speeds,
+    const ContactOptions& options) {
+    SkeletonData skeleton;
+    skeleton.joints = {"root", "LeftFoot"};
+    skeleton.parents = {-1, 0};
+    skeleton.rest = {{Vec3(0), Vec3(0)}, {Quat(1, 0, 0, 0), Quat(1, 0, 0, 0)}, {Vec3(1), Vec3(1)}};
+    MotionFrames frames;
+    frames.rate = 60;
+    frames.joints = 2;
+    float z = 0;
+    for (std::size_t f = 0; f < heights.size(); ++f) {
+        z += speeds[f] / frames.rate;
+        frames.translations.insert(frames.translations.end(), {Vec3(0), Vec3(0, heights[f], z)});
+        frames.rotations.insert(frames.rotations.end(), 2, Quat(1, 0, 0, 0));
+        frames.scales.insert(frames.scales.end(), 2, Vec3(1));
+    }
+    const std::vector<std::uint16_t> joints = {1};
+    return detect_contacts(skeleton, frames, joints, options);
+}
+
 }  // namespace
+
+TEST_CASE(
+    "contacts: a foot that rests high above its lowest point is in the air"
+    * technique("char.walk-retarget")) {
+    std::vector<float> heights(120, 0.0f);
+    std::fill(heights.begin() + 40, heights.begin() + 80, 0.4f);
+    const auto contacts =
+        contacts_of_foot(heights, std::vector<float>(120, 0.0f), {.cutoff = 0.0f});
+    REQUIRE(contacts.size() == 2);
+    CHECK(contacts[0].end < 40.0f / 60);
+    CHECK(contacts[1].begin > 79.0f / 60);
+}
+
+TEST_CASE(
+    "contacts: once planted a foot may move faster than it may land"
+    * technique("char.walk-retarget")) {
+    const float threshold = 0.25f * 0.85f;  // of a leg that is not known
+    std::vector<float> speeds(120, 2.0f);
+    for (std::size_t f = 30; f < 90; ++f) {
+        speeds[f] = threshold * (f % 20 < 10 ? 0.7f : 1.3f);
+    }
+    const std::vector<float> heights(120, 0.0f);
+    CHECK(contacts_of_foot(heights, speeds, {.cutoff = 0.0f}).size() == 1);
+    CHECK(contacts_of_foot(heights, speeds, {.release = 1.0f, .cutoff = 0.0f}).size() == 3);
+}
 
 TEST_CASE(
     "contacts: the plants of a walk are found within a frame or two"
     * technique("char.walk-retarget")) {
     for (const float size : {0.5f, 1.0f, 3.0f}) {
-        SkeletonData skeleton = test::make_walker();
+        SkeletonData skeleton = oracle::make_walker();
         for (Vec3& t : skeleton.rest.translations) {
             t *= size;
         }
-        const test::Walk walk = test::make_walk(skeleton, 3, 0.1f * size);
+        const oracle::Walk walk = oracle::make_walk(skeleton, 3, 0.1f * size);
         const std::vector<ClipContact> contacts = contacts_of(walk);
         REQUIRE(contacts.size() == walk.plants.size());
         for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -60,14 +107,14 @@ TEST_CASE(
 }
 
 TEST_CASE("contacts: noise neither makes nor breaks them" * technique("char.walk-retarget")) {
-    const test::Walk walk = test::make_walk(test::make_walker());
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
     CHECK(contacts_of(walk, 0.002f).size() == walk.plants.size());
     CHECK(contacts_of(walk, 0.004f).size() == walk.plants.size());
 }
 
 TEST_CASE(
     "contacts: a body at rest stands, one that falls does not" * technique("char.walk-retarget")) {
-    test::Walk walk = test::make_walk(test::make_walker(), 1);
+    oracle::Walk walk = oracle::make_walk(oracle::make_walker(), 1);
     const SkeletonData& skeleton = walk.motion.skeleton;
     walk.motion.clip.sheets.clear();
     MotionFrames frames = sample_frames(walk.motion, 60);
@@ -84,7 +131,7 @@ TEST_CASE(
 TEST_CASE(
     "travel: a walk on the spot goes as far as its feet go back"
     * technique("char.walk-retarget")) {
-    const test::Walk walk = test::make_walk(test::make_walker({.has_bone_axes = true}));
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}));
     MotionFrames frames = sample_frames(walk.motion, 60);
     const MotionFrames original = frames;
     const std::size_t joints = frames.joints;
@@ -103,7 +150,7 @@ TEST_CASE(
 TEST_CASE(
     "flight curve: a walk returns its own flight, forward and up"
     * technique("char.walk-retarget, char.foot-flight")) {
-    const test::Walk walk = test::make_walk(test::make_walker());
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
     const MotionFrames frames = sample_frames(walk.motion, 60);
     const std::vector<FlightCurve> flights =
         extract_flights(walk.motion.skeleton, frames, walk.plants, 25);
@@ -134,12 +181,12 @@ TEST_CASE(
 TEST_CASE(
     "flight curve: on other legs lengths and heights scale with the legs"
     * technique("char.walk-retarget")) {
-    SkeletonData skeleton = test::make_walker();
+    SkeletonData skeleton = oracle::make_walker();
     for (Vec3& t : skeleton.rest.translations) {
         t *= 1.7f;
     }
-    const test::Walk walk = test::make_walk(test::make_walker());
-    const test::Walk large = test::make_walk(skeleton, 3, 0.1f * 1.7f);
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::Walk large = oracle::make_walk(skeleton, 3, 0.1f * 1.7f);
     const auto small_flights =
         extract_flights(walk.motion.skeleton, sample_frames(walk.motion, 60), walk.plants);
     const auto large_flights =
@@ -158,7 +205,7 @@ TEST_CASE(
 TEST_CASE(
     "loop: the best interval of a walk is a whole number of cycles, and has no seam"
     * technique("char.mocap-cleanup")) {
-    const test::Walk walk = test::make_walk(test::make_walker({.has_bone_axes = true}), 3.4f);
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}), 3.4f);
     const SkeletonData& skeleton = walk.motion.skeleton;
     MotionFrames frames = sample_frames(walk.motion, 60);
     const auto loop = find_loop(skeleton, frames, 0.4f, 1.5f);
@@ -170,6 +217,7 @@ TEST_CASE(
     for (std::size_t f = 0; f < frames.frames(); ++f) {
         Quat& q = frames.rotations[f * frames.joints + arm];
         q = q * rotation_about({1, 0, 0}, 0.002f * static_cast<float>(f));
+        frames.translations[f * frames.joints].y += 0.001f * static_cast<float>(f);
     }
     const MotionFrames cut = cut_loop(skeleton, frames, *loop);
     CHECK(cut.frames() == 61);

@@ -1,6 +1,7 @@
+#include "bench/oracles/walker_motion.h"
 #include "content/bake/motion/marker_joints.h"
 #include "ecs/base/rng.h"
-#include "tests/content/walker_motion.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
@@ -17,13 +18,13 @@ namespace {
 
 /// Markers around the joints of a walker, `per_joint` on each that has some.
 struct Take {
-    test::Walk walk;
+    oracle::Walk walk;
     std::vector<BodyMarker> markers;
     MarkerMotion motion;
 };
 
-Take make_take(std::size_t per_joint, const test::WalkerShape& shape = {}) {
-    Take take{test::make_walk(test::make_walker(shape), 1), {}, {}};
+Take make_take(std::size_t per_joint, const oracle::WalkerShape& shape = {}) {
+    Take take{oracle::make_walk(oracle::make_walker(shape), 1), {}, {}};
     const SkeletonData& skeleton = take.walk.motion.skeleton;
     const std::vector<Affine> rest = find_rest_matrices(skeleton);
     Random random(1, 2, 3, 4);
@@ -162,6 +163,23 @@ TEST_CASE(
         p += 0.01f * random.direction();
     }
     const MarkerFit fit = fitted(take);
+    const SkeletonData& skeleton = take.walk.motion.skeleton;
+    const std::vector<Affine> rest = find_rest_matrices(skeleton);
+    double squares = 0;
+    for (std::size_t f = 0; f < fit.frames.frames(); ++f) {  // by the joints that were found
+        const std::vector<Affine> now = find_frame_joints(skeleton, fit.frames, f);
+        for (std::size_t m = 0; m < take.markers.size(); ++m) {
+            const BodyMarker& marker = take.markers[m];
+            const Affine back = to_affine(glm::inverse(to_mat4(rest[marker.joint])));
+            const Vec3 at =
+                transform_point(now[marker.joint], transform_point(back, marker.position));
+            const Vec3 off = at - take.motion.positions[f * take.markers.size() + m];
+            squares += static_cast<double>(glm::dot(off, off));
+        }
+    }
+    const double count = static_cast<double>(take.motion.positions.size());
+    CHECK(
+        std::sqrt(squares / count) == test::near(static_cast<double>(fit.residual)).epsilon(1e-3));
     CHECK(fit.residual > 0.003f);
     CHECK(fit.residual < 0.04f);  // the noise of a joint moves all below it
     CHECK(largest_difference(fit.frames, sample_frames(take.walk.motion, 60)) < 0.5f);

@@ -311,6 +311,12 @@ TEST_CASE("quality: skinning is that of double precision, for many joints and mo
     CHECK(count_unbounded(rows) == 1);  // what linear blending loses
 }
 
+TEST_CASE("quality: characters keep their hands, heads and feet where they belong") {
+    const nlohmann::json rows = measured_rows("characters");
+    CHECK(rows.size() >= 8);
+    CHECK(rows[0]["name"].get<std::string>().find(": ") != std::string::npos);
+}
+
 TEST_CASE("quality: caustics are those of ten million photons") {
     const nlohmann::json rows = measured_rows("caustics");
     CHECK(rows.size() == 2 + 3 + 1 + 2 + 1);

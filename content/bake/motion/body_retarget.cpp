@@ -2,9 +2,9 @@
 
 #include "content/bake/motion/body_frame.h"
 #include "content/bake/motion/foot_pins.h"
+#include "ecs/base/limb_reach.h"
 #include "ecs/base/rotation.h"
 #include "ecs/base/text.h"
-#include "ecs/base/two_link.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,8 +1,8 @@
 #include "content/bake/motion/foot_pins.h"
 
 #include "content/bake/motion/body_frame.h"
+#include "ecs/base/limb_reach.h"
 #include "ecs/base/rotation.h"
-#include "ecs/base/two_link.h"
 
 #include <glm/geometric.hpp>
 

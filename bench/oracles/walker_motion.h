@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace limn::test {
+namespace limn::oracle {
 
 /// A person's skeleton that faces +z.
 struct WalkerShape {
@@ -152,4 +152,4 @@ inline Walk make_walk(const SkeletonData& skeleton, float seconds = 3.0f, float 
     return walk;
 }
 
-}  // namespace limn::test
+}  // namespace limn::oracle
