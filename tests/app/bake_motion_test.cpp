@@ -142,6 +142,28 @@ TEST_CASE(
     check_fails(run, 1, "markers.json: found the marker \"d\"");
 }
 
+TEST_CASE("bake: ghosts and curves show a motion standing still" * technique("char.ghost-view")) {
+    const TemporaryFolder folder;
+    write_text(folder.file("walk.bvh"), make_bvh());
+    ProgramRun run = run_limn(
+        folder, {"bake", "ghosts", "walk.bvh", "-o", "ghosts.glb", "--set", "step=0.25", "--set",
+                 "trails=[\"LeftFoot\"]", "--set", "highlight=LeftLeg"});
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    CHECK(run.out == "ghosts.glb: 5 ghosts\n");
+    CHECK(load_gltf(folder.file("ghosts.glb"))->skeleton.joints.empty());
+    run = run_limn(
+        folder, {"bake", "curves", "walk.bvh", "-o", "knee.svg", "--set", "joint=LeftLeg"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.out == "knee.svg: 3 curves of 51 samples\n");
+    CHECK(test::read_text(folder.file("knee.svg")).ends_with("</svg>\n"));
+    run = run_limn(
+        folder, {"bake", "curves", "walk.bvh", "-o", "knee.png", "--set", "joint=LeftLeg"});
+    check_fails(run, 1, "knee.png: expected a file name ending in .svg for curves");
+    run = run_limn(folder, {"bake", "curves", "walk.bvh", "-o", "a.svg", "--set", "joint=LeftLog"});
+    check_fails(run, 1, "walk.bvh: found no joint \"LeftLog\" (did you mean LeftLeg?)");
+}
+
 TEST_CASE("bake: retarget gives a motion to another body" * technique("char.retarget-body")) {
     const TemporaryFolder folder;
     write_text(folder.file("walk.bvh"), make_bvh());

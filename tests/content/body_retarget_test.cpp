@@ -317,6 +317,10 @@ TEST_CASE(
         clip.error().message
         == "found no joints that correspond: Hips ... and seat ..., expected equal names or parts "
            "of a body such as LeftUpLeg or thigh.L");
+    chair.joints[0] = "Hips";  // which alone would only be moved
+    const Result<ClipData> one = retarget_motion(walk.motion, chair);
+    REQUIRE(!one.ok());
+    CHECK(one.error().message.starts_with("found one of the joints that correspond"));
 }
 
 TEST_CASE(

@@ -433,6 +433,7 @@ TEST_CASE(
     REQUIRE_MESSAGE(read.ok(), (read ? "" : read.error().message));
     CHECK(read->warnings.empty());
     CHECK(read->skeleton.joints == scene.skeleton.joints);
+    CHECK(find_node_matrices(*read)[0].row[1].w == motion.clip.sheets[0].translations[0].y);
     CHECK(read->skeleton.parents == scene.skeleton.parents);
     CHECK(read->meshes.size() == scene.meshes.size());
     CHECK(read->meshes.size() >= 2);

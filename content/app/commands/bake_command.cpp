@@ -1,6 +1,7 @@
 #include "content/app/commands/bake_command.h"
 
 #include "content/app/commands/bake_detail.h"
+#include "content/app/commands/bake_ghosts.h"
 #include "content/app/commands/bake_motion.h"
 #include "content/app/commands/bake_photometric.h"
 #include "content/app/commands/bake_recipe.h"
@@ -140,18 +141,20 @@ Status bake_furrows(const BakeOptions& options) {
 constexpr BakeKind kKinds[] = {
     {"ao", "ambient occlusion of a height map or a mesh", bake_occlusion_map},
     {"cone", "relief map with relaxed cones, for marching in few steps", bake_cone_map},
+    {"curves", "plot of the angles of a joint over time", bake_curves, ".svg"},
     {"detail", "normals and occlusion of a detailed mesh for one with few triangles",
      bake_detail_maps},
     {"double-depth", "relief map of a mesh with front and back", bake_double_depth_map},
     {"furrows", "wrinkle furrows of skin along vector fields: height and normal map", bake_furrows},
+    {"ghosts", "poses of a motion at equal time steps as one model", bake_ghosts, ".glb"},
     {"motion", "recorded motion without noise, gaps and jumps, with contacts of the feet",
-     bake_motion, true},
+     bake_motion, ".glb or .bvh", true},
     {"normal", "normal map of a height map or a mesh", bake_normal_map},
     {"odd", "what each view ray sees of a tile, by position and direction", bake_odd_map},
     {"photometric", "normals and reflectance from photographs, each under one light",
      bake_photometric},
     {"relief", "normals and depths of a height map or a mesh", bake_relief_map},
-    {"retarget", "a motion for another body", bake_retarget, true},
+    {"retarget", "a motion for another body", bake_retarget, ".glb or .bvh", true},
     {"strain_model", "wrinkles of captured normal maps, as a function of the strain of a face",
      bake_strain_model},
 };
@@ -165,13 +168,13 @@ std::span<const BakeKind> bake_kinds() {
 Status run_bake(const BakeOptions& options) {
     const BakeKind* const kind = find_kind(bake_kinds(), options.kind);
     LIMN_CHECK(kind != nullptr);
-    const bool is_motion = options.out.ends_with(".glb") || options.out.ends_with(".bvh");
-    if (is_motion != kind->makes_motion) {
+    const std::size_t dot = options.out.rfind('.');
+    const std::string ending = dot == std::string::npos ? "" : options.out.substr(dot);
+    if (ending.size() != 4 || std::string_view(kind->endings).find(ending) == std::string::npos) {
         return fail(
-            "{}: expected a file name ending in {} for {}", options.out,
-            kind->makes_motion ? ".glb or .bvh" : ".png or .exr", kind->name);
+            "{}: expected a file name ending in {} for {}", options.out, kind->endings, kind->name);
     }
-    if (!options.body.empty() && !kind->makes_motion) {
+    if (!options.body.empty() && !kind->has_body) {
         return fail("{}: found a second file, expected one for {}", options.body, kind->name);
     }
     return kind->run(options);

@@ -30,7 +30,8 @@ struct BakeKind {
     const char* name;
     const char* doc;  ///< one line
     Status (*run)(const BakeOptions& options);
-    bool makes_motion = false;  ///< .glb or .bvh, else images
+    const char* endings = ".png or .exr";  ///< of the file that it writes, each of 4 letters
+    bool has_body = false;                 ///< takes a second file
 };
 
 /// All kinds, by name.

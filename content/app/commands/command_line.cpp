@@ -397,9 +397,10 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     app->add_option("body", options.body, "retarget, and motion of .trc: a file with a skeleton")
         ->type_name("BODY");
     add_parsed(
-        *app, "-o,--out", "NAME.png or NAME.exr; NAME.glb or NAME.bvh of motion", options.out,
+        *app, "-o,--out", "NAME.png or NAME.exr; NAME.glb, NAME.bvh or NAME.svg of motion",
+        options.out,
         [](const std::string& text) {
-            if (text.ends_with(".glb") || text.ends_with(".bvh")) {
+            if (text.ends_with(".glb") || text.ends_with(".bvh") || text.ends_with(".svg")) {
                 return Result<std::string>(text);
             }
             const Result<ImageFileKind> kind = image_file_kind(text);
@@ -465,8 +466,14 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "retarget gives a motion to BODY, whose joints have equal names or are the same parts of "
         "a\n"
         "person; planted feet stay. Its recipe: clip, pin_feet, fade, hands, travel.\n"
+        "ghosts superimposes the poses of a motion; its recipe: clip, begin, end, step [s], "
+        "trails\n"
+        "(names of joints), highlight. curves plots the rotation channels of the joint of its\n"
+        "recipe over time.\n"
         "Files are written under a temporary name and renamed when complete.\n\n"
         "Examples:\n"
+        "  limn bake ghosts walk.bvh -o ghosts.glb --set step=0.1 --set 'trails=[\"LeftFoot\"]'\n"
+        "  limn bake curves walk.bvh -o knee.svg --set joint=LeftLeg\n"
         "  limn bake motion walk.bvh -o walk.glb --set cutoff=8 --set travel=true --set loop=true\n"
         "  limn bake motion walk.glb -o walk.bvh\n"
         "  limn bake retarget walk.bvh person.glb -o walking.glb\n"

@@ -423,11 +423,12 @@ Result<ClipData> retarget_motion(
     RetargetReport made;
     made.joints = static_cast<std::size_t>(std::count_if(
         followed.begin(), followed.end(), [](const Followed& f) { return f.first >= 0; }));
-    if (made.joints == 0) {
+    const std::size_t smaller = std::min(source.skeleton.joints.size(), target.joints.size());
+    if (made.joints < std::min<std::size_t>(2, smaller)) {  // one would only be moved
         return fail(
-            "found no joints that correspond: {} ... and {} ..., expected equal names or parts of "
+            "found {} joints that correspond: {} ... and {} ..., expected equal names or parts of "
             "a body such as LeftUpLeg or thigh.L",
-            source.skeleton.joints[0], target.joints[0]);
+            made.joints == 0 ? "no" : "one of the", source.skeleton.joints[0], target.joints[0]);
     }
     const Body from(source.skeleton);
     const Body to(target);

@@ -68,6 +68,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.elbow-circle", "elbow swivel, pole vector, swivel angle of a 7-DOF arm"},
     {"char.fk-function", "forward kinematics, joint space, degrees of freedom"},
     {"char.foot-flight", "foot flight curve, gait"},
+    {"char.ghost-view", "ghosts of a motion, joint trails, joint angle curves"},
     {"char.htr-format", "HTR motion capture files"},
     {"char.ik-ccd", "cyclic coordinate descent, CCD, FABRIK"},
     {"char.ik-hybrid", "hybrid inverse kinematics, full-body IK, analytic limbs"},

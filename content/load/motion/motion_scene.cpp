@@ -45,6 +45,16 @@ ClipData below_scene(ClipData clip) {
     return clip;
 }
 
+/// At rest the root is where the clip begins, so that a view of the rest pose shows the motion.
+void start_at_first_key(const ClipData& clip, SkeletonData& skeleton) {
+    for (const ClipSheet& sheet : clip.sheets) {
+        const bool moves_root = !sheet.translating.empty() && sheet.translating[0] == 1;
+        if (moves_root && sheet.interpolation != Interpolation::Cubic) {
+            skeleton.rest.translations[1] = sheet.translations[0];
+        }
+    }
+}
+
 void add_joint_nodes(GltfScene& scene) {
     const SkeletonData& skeleton = scene.skeleton;
     const auto first = static_cast<std::int32_t>(scene.nodes.size());
@@ -65,6 +75,8 @@ GltfScene make_motion_scene(const std::string& name, const SkeletonMotion& motio
     GltfScene scene;
     scene.name = name;
     scene.skeleton = below_scene(name, motion.skeleton);
+    const ClipData clip = below_scene(motion.clip);
+    start_at_first_key(clip, scene.skeleton);
     add_joint_nodes(scene);
     BoneFigure figure = make_bone_figure(scene.skeleton);
     if (!figure.meshes.empty()) {
@@ -80,7 +92,7 @@ GltfScene make_motion_scene(const std::string& name, const SkeletonMotion& motio
         scene.skins.push_back(std::move(figure.skin));
     }
     if (!motion.clip.sheets.empty()) {
-        scene.clips.push_back(below_scene(motion.clip));
+        scene.clips.push_back(clip);
     }
     return scene;
 }

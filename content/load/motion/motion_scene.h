@@ -13,7 +13,8 @@ namespace limn {
 // Recorded motions as scenes to look at and to write as glTF: the skeleton, its clip and a figure
 // of bones, in which the left side is blue and the right one orange.
 
-/// A node per joint below a first one with the name, as load_gltf makes them.
+/// A node per joint below a first one with the name, as load_gltf makes them. At rest the root of
+/// the motion is where the clip begins.
 [[nodiscard]] GltfScene make_motion_scene(const std::string& name, const SkeletonMotion& motion);
 
 /// The scene of a .bvh file; its warnings are logged.
