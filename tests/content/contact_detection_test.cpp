@@ -233,6 +233,24 @@ TEST_CASE(
         cut.translations[end].z - cut.translations[0].z
         == near(static_cast<double>(walk.stride)).epsilon(1e-3));
     CHECK(!find_loop(skeleton, frames, 100).has_value());
+    // So many frames that not all pairs are compared: the period, 14 frames, is found all the same.
+    MotionFrames many;
+    many.rate = 24;
+    many.joints = frames.joints;
+    for (std::size_t f = 0; f < 4000; ++f) {
+        const std::size_t from = (f % 14) * 4 * frames.joints;
+        const auto copy = [&](const auto& source, auto& target) {
+            const auto first = source.begin() + static_cast<std::ptrdiff_t>(from);
+            target.insert(target.end(), first, first + static_cast<std::ptrdiff_t>(frames.joints));
+        };
+        copy(frames.translations, many.translations);
+        copy(frames.rotations, many.rotations);
+        copy(frames.scales, many.scales);
+    }
+    const auto found = find_loop(skeleton, many, 0.4f, 0);
+    REQUIRE(found.has_value());
+    CHECK(found->last - found->first == 14);
+    CHECK(found->error < 1e-4f);
 }
 
 }  // namespace limn::contact_detection_test

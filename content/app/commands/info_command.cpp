@@ -300,7 +300,12 @@ void print_assets(
     }
     for (std::size_t i = 0; i < std::min(assets.clips.size(), kMaxLines); ++i) {
         const ClipData& clip = assets.clips[i];
-        fmt::print("    {:>8.2f} s  {} numbers  {}\n", clip.duration, clip_size(clip), clip.name);
+        const std::string contacts =
+            clip.contacts.empty() ? ""
+                                  : fmt::format("  {}", counted(clip.contacts.size(), "contact"));
+        fmt::print(
+            "    {:>8.2f} s  {} numbers{}  {}\n", clip.duration, clip_size(clip), contacts,
+            clip.name);
     }
     print_rest(assets.clips.size());
 }

@@ -10,18 +10,36 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 // Techniques: char.mocap-cleanup
 
 namespace limn {
 namespace {
 
-constexpr float kVelocityWeight = 0.1f;    ///< of a difference of velocities [s]
-constexpr std::size_t kMaxCompared = 600;  ///< frames compared with each other; more are skipped
+constexpr float kVelocityWeight = 0.1f;           ///< of a difference of velocities [s]
+constexpr float kNoDifference = 1e-8f;            ///< not worth a later or longer interval [m^2]
+constexpr std::size_t kMaxCompared = 60'000'000;  ///< joints in pairs of frames; more: fewer begin
 
-/// Positions of the joints as seen from the body root, which faces +z.
+/// The parts of the body, or all joints where too few are known.
+std::vector<std::uint16_t> find_compared_joints(const SkeletonData& skeleton) {
+    std::vector<std::uint16_t> joints;
+    for (const std::uint16_t joint : find_body_joints(skeleton).joints) {
+        if (joint != BodyJoints::kNoJoint) {
+            joints.push_back(joint);
+        }
+    }
+    if (joints.size() < 5) {
+        joints.resize(skeleton.joints.size());
+        std::iota(joints.begin(), joints.end(), std::uint16_t{0});
+    }
+    return joints;
+}
+
+/// Positions of joints as seen from the body root, which faces +z.
 std::vector<std::vector<Vec3>>
 find_features(const SkeletonData& skeleton, const MotionFrames& frames, std::uint16_t root) {
+    const std::vector<std::uint16_t> compared = find_compared_joints(skeleton);
     const std::vector<Quat> rest = find_frame_rotations(skeleton, skeleton.rest.rotations);
     std::vector<std::vector<Vec3>> features;
     for (std::size_t f = 0; f < frames.frames(); ++f) {
@@ -33,8 +51,8 @@ find_features(const SkeletonData& skeleton, const MotionFrames& frames, std::uin
         Vec3 origin = transform_point(joints[root], Vec3(0));
         origin.y = 0;
         std::vector<Vec3>& row = features.emplace_back();
-        for (const Affine& joint : joints) {
-            row.push_back(back * (transform_point(joint, Vec3(0)) - origin));
+        for (const std::uint16_t joint : compared) {
+            row.push_back(back * (transform_point(joints[joint], Vec3(0)) - origin));
         }
     }
     return features;
@@ -71,19 +89,28 @@ std::optional<LoopInterval> find_loop(
     const std::size_t longest =
         max_seconds > 0 ? static_cast<std::size_t>(std::lround(max_seconds * frames.rate))
                         : features.size();
-    const std::size_t stride = 1 + features.size() / kMaxCompared;
+    const std::size_t pairs = features.size() * std::min(longest, features.size());
+    const std::size_t stride = 1 + pairs * features[0].size() / kMaxCompared;
     std::optional<LoopInterval> best;
     float least = std::numeric_limits<float>::infinity();
-    for (std::size_t first = 0; first + shortest < features.size(); first += stride) {
+    const auto compare = [&](std::size_t first) {
         for (std::size_t last = first + shortest; last < features.size() && last - first <= longest;
-             last += stride) {
+             ++last) {
             const float difference =
                 difference_of(features, first, last, kVelocityWeight * frames.rate);
-            if (difference < least) {
+            if (difference + kNoDifference < least) {
                 least = difference;
                 best = {first, last, 0};
             }
         }
+    };
+    for (std::size_t first = 0; first < features.size(); first += stride) {
+        compare(first);
+    }
+    const std::size_t around = best ? best->first : 0;
+    for (std::size_t first = around > stride ? around - stride : 0;
+         stride > 1 && first < around + stride; ++first) {
+        compare(first);
     }
     if (best) {
         best->error = std::sqrt(difference_of(features, best->first, best->last, 0));
