@@ -324,6 +324,38 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "body retarget: bones without length, legs without feet and clips without keys are finite"
+    * technique("char.retarget-body")) {
+    const oracle::Walk walk = oracle::make_walk(oracle::make_walker(), 1);
+    const auto check_finite = [&](const SkeletonMotion& source, const SkeletonData& target) {
+        const ClipData clip = retargeted(source, target, {.hands = 0.5f});
+        for (const auto& row : positions_of({target, clip})) {
+            for (const Vec3& p : row) {
+                CHECK(is_finite(p));
+            }
+        }
+    };
+    SkeletonData flat = walk.motion.skeleton;
+    for (std::size_t j = 1; j < flat.joints.size(); ++j) {
+        flat.rest.translations[j] *= j % 2 == 0 ? 0.0f : 1.0f;
+    }
+    check_finite(walk.motion, flat);
+    check_finite({flat, walk.motion.clip}, walk.motion.skeleton);
+    SkeletonData point = flat;
+    point.rest.translations.assign(flat.joints.size(), Vec3(0));
+    check_finite(walk.motion, point);
+    check_finite({point, walk.motion.clip}, walk.motion.skeleton);
+    SkeletonData footless = walk.motion.skeleton;
+    for (std::string& name : footless.joints) {
+        name = name.find("Foot") != std::string::npos ? "stump" + name.substr(0, 1) : name;
+    }
+    check_finite(walk.motion, footless);
+    SkeletonMotion still = walk.motion;
+    still.clip.sheets.clear();
+    check_finite(still, oracle::make_walker(kShortShins));
+}
+
+TEST_CASE(
     "body retarget: the walk of MakeHuman walks on other bodies without sliding"
     * technique("char.retarget-body")) {
     const auto path = test::shared_asset("makehuman/bvh/walk1.bvh");

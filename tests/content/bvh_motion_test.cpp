@@ -455,6 +455,20 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "BVH motion: more poses than fit into memory are refused" * technique("char.mocap-rate")) {
+    BvhFile bvh = make_dance(1);
+    bvh.frame_time = 1e5f;
+    const Result<SkeletonMotion> motion = make_bvh_motion(bvh, "slow", {.rate = 60});
+    REQUIRE(!motion.ok());
+    CHECK(
+        motion.error().message
+        == "found 3900000 s at 60 poses per second of 9 joints, expected at most 100000000 joints "
+           "in "
+           "all poses");
+    CHECK(make_bvh_motion(bvh, "slow", {.rate = 1e-3f}).ok());
+}
+
 TEST_CASE("glTF marks: a bad contact is left out with a warning") {
     SkeletonMotion motion = motion_of(make_dance(6));
     motion.clip.contacts = {{3, 0.1f, 0.25f}};

@@ -88,7 +88,11 @@ Status bake_curves(const BakeOptions& options) {
         bvh = LIMN_TRY(load_bvh(options.in));
     } else {
         const SkeletonMotion motion = LIMN_TRY(load_motion_of(options.in, recipe.clip));
-        bvh = make_bvh_file(motion, find_motion_rate(motion.clip));
+        const float rate = find_motion_rate(motion.clip);
+        if (const Status count = check_pose_count(motion, rate); !count) {
+            return fail("{}: {}", options.in, count.error().message);
+        }
+        bvh = make_bvh_file(motion, rate);
     }
     const Result<std::vector<ChannelCurve>> curves = find_channel_curves(bvh, recipe.joint);
     if (!curves) {

@@ -14,6 +14,7 @@
 #include "content/load/faces/marker_file.h"
 #include "content/load/motion/motion_take.h"
 #include "content/load/motion/motion_text.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/reflect.h"
 
@@ -156,6 +157,20 @@ Result<MotionTake> take_of_markers(const BakeOptions& options, const MotionRecip
     return take;
 }
 
+/// Fails where there are too many poses; warns of what is lost.
+Status check_motion(const std::string& file, const SkeletonMotion& motion, float rate) {
+    if (const Status count = check_pose_count(motion, rate); !count) {
+        return fail("{}: {}", file, count.error().message);
+    }
+    for (const ClipSheet& sheet : motion.clip.sheets) {
+        if (!sheet.morphing.empty()) {
+            log_warn("{}: found morph weights in the clip, which are left out", file);
+            break;
+        }
+    }
+    return Done{};
+}
+
 /// Puts the contacts that follow from the frames into the clip, and counts flights between.
 void mark_contacts(
     const SkeletonMotion& motion, const MotionFrames& frames, const MotionRecipe& recipe,
@@ -184,8 +199,9 @@ Status bake_motion(const BakeOptions& options) {
         return fail("{}: found no motion, expected a clip", options.in);
     }
     const SkeletonMotion motion = take.motion();
-    MotionFrames frames =
-        sample_frames(motion, recipe.rate > 0 ? recipe.rate : find_motion_rate(motion.clip));
+    const float rate = recipe.rate > 0 ? recipe.rate : find_motion_rate(motion.clip);
+    LIMN_TRY(check_motion(options.in, motion, rate));
+    MotionFrames frames = sample_frames(motion, rate);
     if (recipe.cutoff > 0 && !is_trc) {
         smooth_frames(frames, recipe.cutoff);
     }
@@ -228,6 +244,7 @@ Status bake_retarget(const BakeOptions& options) {
     }
     SkeletonMotion motion = source.motion();
     if (recipe.travel) {
+        LIMN_TRY(check_motion(options.in, motion, find_motion_rate(motion.clip)));
         MotionFrames frames = sample_frames(motion, find_motion_rate(motion.clip));
         add_travel(motion.skeleton, frames);
         motion.clip = make_frames_clip(motion.skeleton, frames, motion.clip);

@@ -433,6 +433,7 @@ Result<ClipData> retarget_motion(
     const Body from(source.skeleton);
     const Body to(target);
     made.scale = from.leg > 0 && to.leg > 0 ? to.leg / from.leg : 1.0f;
+    LIMN_TRY(check_pose_count(source, find_motion_rate(source.clip)));
     const MotionFrames frames = sample_frames(source, find_motion_rate(source.clip));
     MotionFrames copied = copy_rotations(from, to, frames, followed);
     const Vec3 shift = find_shift(from, to, frames, made.scale);

@@ -2,6 +2,7 @@
 
 #include "ecs/base/check.h"
 #include "ecs/base/rotation.h"
+#include "ecs/base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace limn {
 namespace {
 
 constexpr float kDefaultMotionRate = 30.0f;
+constexpr double kMaxPoseJoints = 1e8;  ///< joints of all poses: 4 GB
 
 /// Two rows of a sheet, and how far between them.
 struct RowPair {
@@ -132,6 +134,18 @@ float find_motion_rate(const ClipData& clip) {
         }
     }
     return kDefaultMotionRate;
+}
+
+Status check_pose_count(const SkeletonMotion& motion, float rate) {
+    const double poses = std::floor(static_cast<double>(motion.clip.duration) * rate) + 1;
+    const auto joints = static_cast<double>(motion.skeleton.joints.size());
+    if (!(poses * joints <= kMaxPoseJoints)) {
+        return fail(
+            "found {} s at {} poses per second of {} joints, expected at most {} joints in all "
+            "poses",
+            motion.clip.duration, rate, motion.skeleton.joints.size(), kMaxPoseJoints);
+    }
+    return Done{};
 }
 
 MotionFrames sample_frames(const SkeletonMotion& motion, float rate) {

@@ -39,6 +39,9 @@ sample_motion(const SkeletonData& skeleton, const ClipData& clip, float time);
 /// The rate of the clip's keys, where they are equally spaced to 1 %; else 30 [1/s].
 [[nodiscard]] float find_motion_rate(const ClipData& clip);
 
+/// Fails with one line where so many poses would not fit into memory.
+[[nodiscard]] Status check_pose_count(const SkeletonMotion& motion, float rate);
+
 /// Poses at times 0, 1 / rate, 2 / rate ... up to the duration; at least one (char.mocap-rate).
 [[nodiscard]] MotionFrames sample_frames(const SkeletonMotion& motion, float rate);
 

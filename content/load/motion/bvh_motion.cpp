@@ -197,7 +197,11 @@ make_bvh_motion(const BvhFile& bvh, const std::string& name, const BvhImport& op
     }
     LIMN_TRY(check_skeleton(motion.skeleton));
     LIMN_TRY(check_clip(motion.clip, bvh.joints.size(), 0));
-    return options.rate > 0 ? resample_motion(motion, options.rate) : std::move(motion);
+    if (options.rate > 0) {
+        LIMN_TRY(check_pose_count(motion, options.rate));
+        motion = resample_motion(motion, options.rate);
+    }
+    return motion;
 }
 
 Result<SkeletonMotion> load_bvh_motion(const std::string& path, const BvhImport& options) {
