@@ -154,7 +154,6 @@ void register_all_components() {
     register_component<WrinkleTrack>();
     register_component<JointAttachment>();
     register_component<IkRig>();
-    register_component<IkGoals>();
     register_component<LookAt>();
     register_component<Walkable>();
     register_component<FootPlant>();

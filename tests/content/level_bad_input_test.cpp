@@ -87,7 +87,7 @@ TEST_CASE("bad level: the error for a misplaced or misnamed key says where it be
          "2:54: entities[0]: path_follower.path: found the path \"wya\", expected an existing name "
          "(did you mean way?)"},
         {R"({"entities": [{"position": [0, 1, 0]}]})",
-         R"(one of name prefab gltf variant nodes repeat children ("position" is a field of transform))"},
+         R"(one of name prefab gltf variant nodes repeat children ("position" is a field of look_at or reach_goal or transform))"},
         {R"({"entities": [{"rotation": [0, 1, 0]}]})", R"(("rotation" is a field of transform))"},
         {R"({"entities": [{"intensity": 3}]})",
          R"(("intensity" is a field of particle_light or point_light or spot_light))"},

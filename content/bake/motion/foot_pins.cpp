@@ -88,7 +88,7 @@ class FootTracker {
 };
 
 struct PinnedLeg {
-    LimbJoints limb;
+    PinnedLimb limb;
     std::optional<std::uint16_t> toes;
     std::vector<FootTarget> targets;  ///< one per frame
 };
@@ -125,7 +125,7 @@ void find_targets(
 }
 
 /// How far the hip must go down for the leg to reach its target.
-float find_drop(const std::vector<Affine>& joints, const LimbJoints& leg, const Vec3& target) {
+float find_drop(const std::vector<Affine>& joints, const PinnedLimb& leg, const Vec3& target) {
     const Vec3 hip = position_in(joints, leg.root);
     const Vec3 knee = position_in(joints, leg.middle);
     const Vec3 ankle = position_in(joints, leg.tip);
@@ -203,7 +203,7 @@ Vec3 find_left(const SkeletonData& skeleton, const BodyJoints& body) {
 }
 
 void reach_with_limb(
-    const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const LimbJoints& limb,
+    const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const PinnedLimb& limb,
     const Vec3& target, const Vec3& hinge, const Quat& turn) {
     const std::vector<Affine> joints = find_frame_joints(skeleton, frames, frame);
     const std::span<Quat> local =

@@ -26,7 +26,7 @@ FootPins pin_feet(
     std::span<const ClipContact> contacts, float fade);
 
 /// A limb of two bones: thigh, shin, foot or upper arm, forearm, hand.
-struct LimbJoints {
+struct PinnedLimb {
     std::uint16_t root = 0;
     std::uint16_t middle = 0;
     std::uint16_t tip = 0;
@@ -35,7 +35,7 @@ struct LimbJoints {
 /// Brings the tip to `target`, in the space of the skeleton, in one frame. `hinge`: unit axis about
 /// which a straight limb bends. The tip keeps its orientation, turned by `turn`.
 void reach_with_limb(
-    const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const LimbJoints& limb,
+    const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const PinnedLimb& limb,
     const Vec3& target, const Vec3& hinge, const Quat& turn = {1, 0, 0, 0});
 
 /// The person's left at rest, unit; +x without legs or arms. Knees bend about it.
