@@ -34,6 +34,7 @@
 #include "ecs/components/mesh_levels.h"
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
+#include "ecs/components/move_intent.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_balls.h"
@@ -133,6 +134,7 @@ void register_all_components() {
     register_component<Pose>();
     register_component<CrowdPose>();
     register_component<CrowdPoseState>();
+    register_component<MoveIntent>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();
