@@ -20,7 +20,7 @@ TEST_CASE("CCD: no pass moves the effector away from its goal" * technique("char
     for (int i = 0; i < 60; ++i) {
         const RandomChain chain = make_random_chain(random, 3 + i % 6, i % 4 == 0);
         JointState state = random_state(random, chain.tree);
-        const Vec3 goal = random.uniform(0.2f, 4.0f) * any_direction(random);
+        const Vec3 goal = any_offset(random, 0.2f, 4.0f);
         float distance = glm::distance(tip_of(chain.tree, state, chain.tip), goal);
         for (int k = 0; k < 20; ++k) {
             const IkResult result = solve_ccd(chain.tree, chain.tip, goal, {.passes = 1}, state);
@@ -55,11 +55,11 @@ TEST_CASE("CCD: five links reach goals within 32 passes" * technique("char.ik-cc
     for (int i = 0; i < 100; ++i) {
         // Half of the reach; it takes more passes the straighter the chain must become.
         JointState state = random_state(random, tree, 1);
-        const Vec3 goal = random.uniform(0.5f, 2.5f) * any_direction(random);
+        const Vec3 goal = any_offset(random, 0.5f, 2.5f);
         const IkResult result = solve_ccd(tree, tip, goal, {}, state);
         CHECK(result.is_reached);
         CHECK(result.distance <= 1e-3f);
-        const Vec3 far = random.uniform(2.5f, 4.5f) * any_direction(random);
+        const Vec3 far = any_offset(random, 2.5f, 4.5f);
         CHECK(solve_ccd(tree, tip, far, {.passes = 300}, state).is_reached);
     }
 }
@@ -106,7 +106,7 @@ TEST_CASE(
     const Effector tip = {6, {0, 0.5f, 0}};
     for (int i = 0; i < 100; ++i) {
         JointState state = random_state(random, tree);
-        const Vec3 goal = random.uniform(0.3f, 3.0f) * any_direction(random);
+        const Vec3 goal = any_offset(random, 0.3f, 3.0f);
         const IkResult result = solve_fabrik(tree, tip, goal, {}, state);
         CHECK(result.is_reached);
         const JointFrames frames = find_frames(tree, state);

@@ -70,7 +70,7 @@ TEST_CASE(
         limb.root = any_direction(random);
         limb.middle = limb.root + 0.45f * any_direction(random);
         limb.tip = limb.middle + 0.4f * any_direction(random);
-        const Vec3 target = limb.root + random.uniform(0.06f, 0.84f) * any_direction(random);
+        const Vec3 target = limb.root + any_offset(random, 0.06f, 0.84f);
         const LimbOptions options = {
             .pole = i % 2 == 0 ? Vec3(0) : any_direction(random),
             .swivel = random.uniform(-3.0f, 3.0f)};

@@ -71,8 +71,7 @@ TEST_CASE(
     const JointFrames rest = find_frames(body.tree, zero_state(body.tree));
     for (int i = 0; i < 100; ++i) {
         for (BodyLimb& limb : body.limbs) {
-            limb.goal =
-                rest.positions[limb.root] + random.uniform(0.06f, 0.53f) * any_direction(random);
+            limb.goal = rest.positions[limb.root] + any_offset(random, 0.06f, 0.53f);
         }
         JointState state = zero_state(body.tree);
         CHECK(solve_hybrid(body.tree, body.limbs, {}, state) < 2e-6f);
@@ -145,7 +144,7 @@ TEST_CASE(
     Random random(3, 0, 0, 0);
     const JointFrames rest = find_frames(body.tree, zero_state(body.tree));
     for (BodyLimb& limb : body.limbs) {
-        limb.goal = rest.positions[limb.root] + random.uniform(0.1f, 0.5f) * any_direction(random);
+        limb.goal = rest.positions[limb.root] + any_offset(random, 0.1f, 0.5f);
     }
     JointState together = zero_state(body.tree);
     solve_hybrid(body.tree, body.limbs, {}, together);

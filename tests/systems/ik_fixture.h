@@ -36,7 +36,20 @@ inline JointTree make_free_chain(std::size_t count, float length = 1) {
 }
 
 inline Vec3 any_direction(Random& random) {
-    return normalize_or(Vec3(random.normal(), random.normal(), random.normal()), {0, 1, 0});
+    // in braces: compilers draw arguments of a call in different orders
+    return normalize_or(Vec3{random.normal(), random.normal(), random.normal()}, {0, 1, 0});
+}
+
+/// In any direction, from `low` to `high` long.
+inline Vec3 any_offset(Random& random, float low, float high) {
+    const float length = random.uniform(low, high);
+    return length * any_direction(random);
+}
+
+/// About any axis, by up to `angle` either way [rad].
+inline Quat any_turn(Random& random, float angle) {
+    const Vec3 axis = any_direction(random);
+    return rotation_about(axis, random.uniform(-angle, angle));
 }
 
 /// Hinges about random axes with random links, and the same for the oracle.
@@ -54,7 +67,7 @@ inline oracle::Vec3d to_double(const Vec3& v) {
 inline RandomChain make_random_chain(Random& random, std::size_t count, bool slides = false) {
     RandomChain chain;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 offset = i == 0 ? Vec3(0) : random.uniform(0.3f, 1.0f) * any_direction(random);
+        const Vec3 offset = i == 0 ? Vec3(0) : any_offset(random, 0.3f, 1.0f);
         const Vec3 axis = any_direction(random);
         const bool is_slide = slides && i % 3 == 1;
         add_joint(chain.tree, static_cast<std::int32_t>(i) - 1, offset);

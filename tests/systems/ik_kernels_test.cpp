@@ -36,11 +36,10 @@ TwoLinkBatch make_limbs(std::size_t count) {
     batch.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 root = any_direction(random);
-        const Vec3 upper =
-            i % 13 == 3 ? Vec3(0) : random.uniform(0.2f, 0.6f) * any_direction(random);
+        const Vec3 upper = i % 13 == 3 ? Vec3(0) : any_offset(random, 0.2f, 0.6f);
         const Vec3 lower = i % 11 == 4   ? upper
                            : i % 11 == 5 ? -upper
-                                         : random.uniform(0.2f, 0.6f) * any_direction(random);
+                                         : any_offset(random, 0.2f, 0.6f);
         batch.root.set(i, root);
         batch.middle.set(i, root + upper);
         batch.tip.set(i, root + upper + lower);
@@ -67,9 +66,7 @@ ChainBatch make_chains(std::size_t links, std::size_t count, float reach) {
             length += bone;
             batch.points.set(k * count + i, point);
         }
-        batch.goals.set(
-            i, batch.points.get(i)
-                   + reach * random.uniform(0.5f, 1.0f) * length * any_direction(random));
+        batch.goals.set(i, batch.points.get(i) + reach * length * any_offset(random, 0.5f, 1.0f));
     }
     return batch;
 }
@@ -157,7 +154,7 @@ TEST_CASE("IK batch: aim turns by the shortest arc, also to the opposite and fro
     batch.resize(100);
     Random random(3, 0, 0, 0);
     for (std::size_t i = 0; i < 100; ++i) {
-        const Vec3 forward = random.uniform(0.1f, 9.0f) * any_direction(random);
+        const Vec3 forward = any_offset(random, 0.1f, 9.0f);
         batch.forward.set(i, i % 10 == 3 ? Vec3(0) : forward);
         batch.wanted.set(i, i % 10 == 5 ? -forward : any_direction(random));
     }

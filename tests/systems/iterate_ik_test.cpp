@@ -58,7 +58,7 @@ TEST_CASE(
     const JointTree tree = make_free_chain(3);
     const Effector tip = {2, {0, 1, 0}};
     for (int i = 0; i < 200; ++i) {
-        const Vec3 goal = random.uniform(0.3f, 2.7f) * any_direction(random);
+        const Vec3 goal = any_offset(random, 0.3f, 2.7f);
         JointState state = random_state(random, tree);
         const IkResult result = iterate_ik(tree, tip, {goal, {}}, {}, state);
         CHECK(result.is_reached);
@@ -75,7 +75,7 @@ TEST_CASE(
     for (int i = 0; i < 40; ++i) {
         const RandomChain chain = make_random_chain(random, 4 + i % 5);
         JointState state = random_state(random, chain.tree);
-        const Vec3 goal = random.uniform(0.2f, 5.0f) * any_direction(random);
+        const Vec3 goal = any_offset(random, 0.2f, 5.0f);
         float distance = glm::distance(tip_of(chain.tree, state, chain.tip), goal);
         for (int k = 0; k < 40; ++k) {
             const IkResult result =

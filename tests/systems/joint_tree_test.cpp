@@ -26,7 +26,7 @@ SkeletonData make_arm() {
     SkeletonData skeleton = make_chain(5);
     Random random(3, 0, 0, 0);
     for (Quat& rest : skeleton.rest.rotations) {
-        rest = rotation_about(any_direction(random), random.uniform(-1.0f, 1.0f));
+        rest = any_turn(random, 1.0f);
     }
     skeleton.freedoms = {
         {.joint = 1, .axis = {0, 0, 1}, .min = -1, .max = 2, .middle = 0.5f, .stiffness = 0.3f},
@@ -101,7 +101,7 @@ TEST_CASE(
     for (int i = 0; i < 100; ++i) {
         LocalPose pose = skeleton.rest;
         for (Quat& rotation : pose.rotations) {
-            rotation = rotation_about(any_direction(random), random.uniform(-3.0f, 3.0f));
+            rotation = any_turn(random, 3.0f);
         }
         const std::vector<std::uint16_t> joints = list_chain(skeleton, 4, 3);
         REQUIRE(joints == std::vector<std::uint16_t>{1, 2, 3, 4});

@@ -173,7 +173,7 @@ TEST_CASE(
         skeleton.rest.scales[0] = Vec3(0.5f);
         LocalPose pose = skeleton.rest;
         for (Quat& rotation : pose.rotations) {
-            rotation = rotation_about(any_direction(random), random.uniform(-1.5f, 1.5f));
+            rotation = any_turn(random, 1.5f);
         }
         const LimbJoints limb = find_limb(skeleton, 6, 4);
         CHECK(limb.root == 2);
