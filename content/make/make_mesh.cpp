@@ -19,6 +19,7 @@
 #include "content/make/models/sweep.h"
 #include "content/make/models/teapot.h"
 #include "content/make/models/terrain.h"
+#include "content/make/person/person.h"
 
 #include <type_traits>
 #include <vector>
@@ -77,6 +78,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         rigged_kind<MannequinShape, make_mannequin, make_mannequin_rig>(
             "mannequin", "an artist's wooden figure that faces z, with skeleton, skin and a clip"),
+        rigged_kind<PersonShape, make_person, make_person_rig>(
+            "person", "a dressed person that faces z, each seed another, with skeleton and clips"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<PlantShape, make_plants>(
             "plants", "grass, bushes or trees of blades that branch, standing on y = 0"),

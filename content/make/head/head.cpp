@@ -40,42 +40,6 @@ float gaussian_spot(const Vec3& p, const Vec3& center, float radius) {
     return std::exp(-glm::dot(offset, offset) / square(radius));
 }
 
-/// Factor of the material's color at rest position `p` [cm].
-Vec3 skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape) {
-    const Vec3 p = {std::abs(point.x), point.y, point.z};
-    Vec3 color = Vec3(1);
-    color *=
-        glm::mix(Vec3(1), Vec3(0.16f, 0.15f, 0.16f), shape.scalp_shade * scalp_hair_cover(point));
-    const float flush = std::min(
-        1.0f, 0.8f * gaussian_spot(p, {4.4f, -0.2f, 8.6f}, 2.4f)
-                  + gaussian_spot(p, {0, 0.2f, 12}, 1.5f)
-                  + (vertex.loops == HeadLoops::Ear ? 0.9f * (1 - ear_on_cheek(vertex)) : 0.0f)
-                  + 0.4f * gaussian_spot(p, {0, -6.3f, 10.2f}, 1.6f));
-    color = glm::mix(color, Vec3(1.0f, 0.80f, 0.76f), flush);
-    color = glm::mix(
-        color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * gaussian_spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
-    if (vertex.loops == HeadLoops::Mouth) {
-        const float arch = std::sqrt(std::max(1 - square(p.x / 2.45f), 0.0f));
-        const float bow = 0.14f * gaussian_spot({p.x, 0, 0}, {0, 0, 0}, 0.3f);
-        const float edge = p.y > -3.3f ? 0.85f * arch - bow : arch;
-        const float lips = 1 - glm::smoothstep(edge - 0.14f, edge + 0.06f, std::abs(p.y + 3.3f));
-        color = glm::mix(color, Vec3(0.86f, 0.52f, 0.52f), lips);
-        if (vertex.loop > kLipLoop + 1) {
-            color = Vec3(0.45f, 0.2f, 0.2f);
-        }
-    }
-    if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
-        const float deep = static_cast<float>(vertex.loop - kNostrilRim) / 2;
-        color = glm::mix(color, Vec3(0.3f, 0.12f, 0.1f), std::min(deep, 1.0f));
-    }
-    if (vertex.loops == HeadLoops::Eye) {
-        if (vertex.loop >= kLidLoop) {
-            color = Vec3(0.95f, 0.62f, 0.58f);
-        }
-    }
-    return color;
-}
-
 Vec2 uv_at(const Vec2& chart) {
     return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 13)};
 }
@@ -120,7 +84,7 @@ HeadPart make_skin(const HeadShape& shape) {
             part.points.push_back(skin_point(vertex, positions[v]));
             part.mesh.positions.push_back(positions[v]);
             part.mesh.uvs.push_back(uv_at(chart));
-            part.mesh.colors.emplace_back(skin_color(vertex, positions[v], shape), 1.0f);
+            part.mesh.colors.emplace_back(head_skin_color(vertex, positions[v], shape), 1.0f);
         }
         return found->second;
     };
@@ -302,6 +266,41 @@ void remove_triangles(MeshData& mesh, const std::vector<bool>& triangles) {
 }
 
 }  // namespace
+
+Vec3 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape) {
+    const Vec3 p = {std::abs(point.x), point.y, point.z};
+    Vec3 color = Vec3(1);
+    color *=
+        glm::mix(Vec3(1), Vec3(0.16f, 0.15f, 0.16f), shape.scalp_shade * scalp_hair_cover(point));
+    const float flush = std::min(
+        1.0f, 0.8f * gaussian_spot(p, {4.4f, -0.2f, 8.6f}, 2.4f)
+                  + gaussian_spot(p, {0, 0.2f, 12}, 1.5f)
+                  + (vertex.loops == HeadLoops::Ear ? 0.9f * (1 - ear_on_cheek(vertex)) : 0.0f)
+                  + 0.4f * gaussian_spot(p, {0, -6.3f, 10.2f}, 1.6f));
+    color = glm::mix(color, Vec3(1.0f, 0.80f, 0.76f), flush);
+    color = glm::mix(
+        color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * gaussian_spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
+    if (vertex.loops == HeadLoops::Mouth) {
+        const float arch = std::sqrt(std::max(1 - square(p.x / 2.45f), 0.0f));
+        const float bow = 0.14f * gaussian_spot({p.x, 0, 0}, {0, 0, 0}, 0.3f);
+        const float edge = p.y > -3.3f ? 0.85f * arch - bow : arch;
+        const float lips = 1 - glm::smoothstep(edge - 0.14f, edge + 0.06f, std::abs(p.y + 3.3f));
+        color = glm::mix(color, Vec3(0.86f, 0.52f, 0.52f), lips);
+        if (vertex.loop > kLipLoop + 1) {
+            color = Vec3(0.45f, 0.2f, 0.2f);
+        }
+    }
+    if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
+        const float deep = static_cast<float>(vertex.loop - kNostrilRim) / 2;
+        color = glm::mix(color, Vec3(0.3f, 0.12f, 0.1f), std::min(deep, 1.0f));
+    }
+    if (vertex.loops == HeadLoops::Eye) {
+        if (vertex.loop >= kLidLoop) {
+            color = Vec3(0.95f, 0.62f, 0.58f);
+        }
+    }
+    return color;
+}
 
 MeshData make_head(const HeadShape& requested) {
     const HeadShape shape = complete(requested);

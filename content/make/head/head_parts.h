@@ -15,6 +15,10 @@ struct HeadPart {
     std::vector<bool> covered;      ///< per triangle: removed in the end; or empty
 };
 
+/// Factor of the material's color on the skin at rest position `point` [cm]: hair, flush, lips.
+[[nodiscard]] Vec3
+head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape);
+
 /// Both eyeballs, of radius kBallRadius, with an iris as deep behind the cornea as in a real eye,
 /// and a pupil of 3 mm; and the caruncles in the inner corners of the eyes.
 [[nodiscard]] HeadPart make_eye_balls();

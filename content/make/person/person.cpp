@@ -1,0 +1,100 @@
+#include "content/make/person/person.h"
+
+#include "content/bake/tangents.h"
+#include "content/make/models/rigid_parts.h"
+#include "content/make/models/simplify_mesh.h"
+#include "content/make/person/person_clips.h"
+#include "content/make/person/person_parts.h"
+
+#include <algorithm>
+#include <array>
+
+namespace limn {
+
+namespace {
+
+constexpr float kSmooth = kPi;
+constexpr float kClothCrease = 1.25f;  ///< hems are sharp [rad]
+
+MeshData finish_half(BodyMesh& half, const PersonFrame& frame, float crease, bool folds) {
+    half.fair(4);
+    half.mirror();
+    half.face_outwards();
+    if (folds) {
+        fold_cloth(half, frame);
+    }
+    return half.finish(frame, crease);
+}
+
+MeshData make_skin(const PersonFrame& frame) {
+    MeshData mesh = make_person_head(frame);
+    const PersonHems hems = person_hems(frame);
+    BodyMesh limbs;
+    add_arm(limbs, frame, hems.sleeve - 0.045f);
+    if (frame.look.shape.legs != PersonLegwear::Trousers) {
+        add_leg(limbs, frame, hems.leg + 0.06f);
+    }
+    append_part(mesh, finish_half(limbs, frame, kSmooth, false));
+    return mesh;
+}
+
+MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
+    BodyMesh mesh;
+    switch (part) {
+    case PersonPart::All:
+        break;
+    case PersonPart::Skin:
+        return make_skin(frame);
+    case PersonPart::Eyes:
+        add_eyes(mesh, frame);
+        mesh.face_outwards();
+        return mesh.finish(frame, kSmooth);
+    case PersonPart::Hair:
+        add_hair(mesh, frame);
+        mesh.face_outwards();
+        return mesh.finish(frame, kSmooth);
+    case PersonPart::Shirt:
+        add_shirt(mesh, frame);
+        return finish_half(mesh, frame, kClothCrease, true);
+    case PersonPart::Trousers:
+        add_trousers(mesh, frame);
+        return finish_half(mesh, frame, kClothCrease, true);
+    case PersonPart::Shoes:
+        add_shoe(mesh, frame);
+        return finish_half(mesh, frame, 0.9f, false);
+    }
+    MeshData whole;
+    for (const PersonPart each :
+         {PersonPart::Skin, PersonPart::Eyes, PersonPart::Hair, PersonPart::Shirt,
+          PersonPart::Trousers, PersonPart::Shoes}) {
+        append_part(whole, make_person_part(frame, each));
+    }
+    return whole;
+}
+
+}  // namespace
+
+MeshData make_person(const PersonShape& shape) {
+    const PersonFrame frame = measure_person(shape);
+    MeshData mesh = make_person_part(frame, shape.part);
+    mesh.name = "person";
+    for (Vec3& p : mesh.positions) {
+        p *= frame.scale;
+    }
+    if (shape.triangles > 0) {
+        simplify_mesh(mesh, static_cast<std::size_t>(shape.triangles));
+    }
+    update_bounds(mesh);
+    return mesh;
+}
+
+MeshRig make_person_rig(const PersonShape& shape) {
+    const PersonFrame frame = measure_person(shape);
+    MeshRig rig;
+    rig.skeleton = make_person_skeleton(frame);
+    rig.skin = make_rigid_skin(rig.skeleton);
+    rig.clips = make_person_clips(frame);
+    return rig;
+}
+
+}  // namespace limn

@@ -1,0 +1,291 @@
+#include "content/bake/tangents.h"
+#include "content/make/head/head_layout.h"
+#include "content/make/head/head_parts.h"
+#include "content/make/head/head_wrap.h"
+#include "content/make/person/person_head_shape.h"
+#include "content/make/person/person_parts.h"
+#include "content/make/person/person_weights.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+// Techniques: engine.lod-mesh
+
+namespace limn {
+
+namespace {
+
+/// Rings that continue the neck down into the collar.
+constexpr int kNeckRings = 2;
+
+/// Skin of a head as triangles of shared vertices, at the reference height.
+struct WovenHead {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    std::vector<Vec3> colors;
+    std::vector<Vec2> charts;  ///< columns and rows of head_layout.h
+    std::vector<std::uint32_t> indices;
+};
+
+/// Each vertex, or the one of the upper lip where both lips touch.
+std::vector<std::uint32_t> close_lips(const HeadLayout& layout) {
+    std::vector<std::uint32_t> same(layout.vertices.size());
+    std::vector<std::uint32_t> edge;
+    for (std::uint32_t v = 0; v < same.size(); ++v) {
+        same[v] = v;
+        const HeadVertex& vertex = layout.vertices[v];
+        if (vertex.loops == HeadLoops::Mouth && vertex.loop == kLipLoop) {
+            edge.push_back(v);
+        }
+    }
+    // In order of their angle: the first is the left corner, then the upper lip.
+    for (std::size_t k = edge.size() / 2 + 1; k < edge.size(); ++k) {
+        same[edge[k]] = edge[edge.size() - k];
+    }
+    return same;
+}
+
+bool is_in_mouth(const HeadVertex& vertex) {
+    return vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop;
+}
+
+Vec3 in_body(const PersonFrame& frame, const Vec3& centimeters) {
+    return frame.head_origin + 0.01f * frame.head_scale * centimeters;
+}
+
+void append_triangles(WovenHead& head, const std::array<std::uint32_t, 4>& quad) {
+    const auto length = [&](int a, int b) {
+        return glm::distance(head.positions[quad[a]], head.positions[quad[b]]);
+    };
+    const std::uint32_t first = length(0, 2) <= length(1, 3) ? 0 : 1;
+    for (const std::uint32_t second : {1u, 2u}) {
+        const std::uint32_t a = quad[first];
+        const std::uint32_t b = quad[(first + second) % 4];
+        const std::uint32_t c = quad[(first + second + 1) % 4];
+        if (a != b && b != c && c != a) {  // else the quad has lost a corner
+            head.indices.insert(head.indices.end(), {a, b, c});
+        }
+    }
+}
+
+/// Down to the chest, closed by a fan.
+void add_neck(WovenHead& head, const PersonFrame& frame, std::vector<std::uint32_t> ring) {
+    std::vector<std::uint32_t> upper = ring;
+    const Vec3 skin = frame.look.skin_color;
+    std::vector<std::uint32_t> lower;
+    for (int r = 1; r <= kNeckRings; ++r) {
+        lower.clear();
+        const float t = static_cast<float>(r) / kNeckRings;
+        for (const std::uint32_t v : ring) {
+            const Vec3 p = head.positions[v];
+            const float angle = std::atan2(p.x, p.z + 0.015f);
+            const Vec3 base = trunk_point(frame, 1.43f, angle, -0.014f);
+            const Vec3 out(base.x, 0, base.z);
+            lower.push_back(static_cast<std::uint32_t>(head.positions.size()));
+            head.positions.push_back(
+                glm::mix(p, base, t) - 0.012f * 4 * t * (1 - t) * normalize_or(out, Vec3(0)));
+            head.colors.push_back(skin);
+            head.charts.push_back(head.charts[v] + Vec2(0, 3 * t));
+        }
+        for (std::size_t j = 0; j < ring.size(); ++j) {
+            const std::size_t next = (j + 1) % ring.size();
+            append_triangles(head, {upper[j], lower[j], lower[next], upper[next]});
+        }
+        upper = lower;
+    }
+    Vec3 center(0);
+    for (const std::uint32_t v : lower) {
+        center += head.positions[v] / static_cast<float>(lower.size());
+    }
+    const auto middle = static_cast<std::uint32_t>(head.positions.size());
+    head.positions.push_back(center - Vec3(0, 0.01f, 0));
+    head.colors.push_back(skin);
+    head.charts.emplace_back(0, kHeadRows + 6);
+    for (std::size_t j = 0; j < lower.size(); ++j) {
+        head.indices.insert(head.indices.end(), {lower[j], middle, lower[(j + 1) % lower.size()]});
+    }
+}
+
+WovenHead weave_head(const PersonFrame& frame) {
+    const HeadShape shape = person_head_shape(frame);
+    const HeadLayout& layout = head_layout();
+    const std::vector<Vec3> wrapped = wrap_head(shape);
+    const std::vector<std::uint32_t> same = close_lips(layout);
+    WovenHead head;
+    std::map<int, std::uint32_t> neck;
+    for (std::uint32_t v = 0; v < wrapped.size(); ++v) {
+        const HeadVertex& vertex = layout.vertices[v];
+        head.positions.push_back(in_body(frame, wrapped[v]));
+        const bool lash = vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
+                          && std::sin(vertex.angle) > 0.1f;
+        head.colors.push_back(
+            (lash ? 0.25f : 1.0f) * frame.look.skin_color
+            * head_skin_color(vertex, wrapped[v], shape));
+        head.charts.push_back(vertex.chart);
+        if (vertex.loops == HeadLoops::None && vertex.chart.y == kHeadRows) {
+            neck[static_cast<int>(std::lround(vertex.chart.x))] = v;
+        }
+    }
+    for (const auto& quad : layout.quads) {
+        const bool hidden = std::any_of(quad.begin(), quad.end(), [&](std::uint32_t v) {
+            return is_in_mouth(layout.vertices[v]);
+        });
+        if (!hidden) {
+            append_triangles(head, {same[quad[0]], same[quad[1]], same[quad[2]], same[quad[3]]});
+        }
+    }
+    std::vector<std::uint32_t> ring;
+    for (const auto& [column, v] : neck) {
+        ring.push_back(v);
+    }
+    add_neck(head, frame, std::move(ring));
+    head.normals.assign(head.positions.size(), Vec3(0));
+    for (std::size_t i = 0; i < head.indices.size(); i += 3) {
+        const auto at = [&](std::size_t k) { return head.positions[head.indices[i + k]]; };
+        const Vec3 area = glm::cross(at(1) - at(0), at(2) - at(0));
+        for (std::size_t k = 0; k < 3; ++k) {
+            head.normals[head.indices[i + k]] += area;
+        }
+    }
+    return head;
+}
+
+/// Collapses edges where it shows least: in a space where the face is larger, and smaller what is
+/// under hair or clothes.
+void reduce(WovenHead& head, const PersonFrame& frame) {
+    constexpr float kMostError = 0.05f;
+    const bool bald = frame.look.shape.hair == PersonHair::Bald;
+    std::vector<Vec3> warped;
+    for (const Vec3& p : head.positions) {
+        const Vec3 q = (p - frame.head_origin) / frame.head_scale;
+        const float face = glm::smoothstep(0.02f, 0.08f, q.z) * glm::smoothstep(-0.10f, -0.05f, q.y)
+                           * (1 - glm::smoothstep(0.06f, 0.10f, q.y));
+        const Vec3 side = q * Vec3(q.x < 0 ? -1 : 1, 1, 1);
+        const float mouth = std::exp(-square(glm::distance(q, Vec3(0, -0.033f, 0.104f)) / 0.026f));
+        const float eye =
+            std::exp(-square(glm::distance(side, Vec3(0.0315f, 0.035f, 0.085f)) / 0.02f));
+        const float hidden = bald ? 0.0f : glm::smoothstep(0.09f, 0.12f, q.y - 0.4f * q.z);
+        const float below = 1 - glm::smoothstep(-0.16f, -0.13f, q.y);
+        warped.push_back(
+            q * (1 + 1.2f * face + 0.5f * (mouth + eye)) * (1 - 0.6f * std::max(hidden, below)));
+    }
+    std::vector<std::uint32_t> indices(head.indices.size());
+    const std::size_t target = 3 * static_cast<std::size_t>(frame.look.shape.head_triangles);
+    indices.resize(meshopt_simplify(
+        indices.data(), head.indices.data(), head.indices.size(), &warped[0].x, warped.size(),
+        sizeof(Vec3), target, kMostError));
+    head.indices = std::move(indices);
+}
+
+/// Closed strips along the rows of the grid above the eyes, on the fine skin.
+void add_brows(BodyMesh& mesh, const PersonFrame& frame, const WovenHead& head) {
+    constexpr int kFirst = 4;  // columns
+    constexpr int kLast = 16;
+    const HeadLayout& layout = head_layout();
+    std::map<std::pair<int, int>, std::uint32_t> grid;
+    for (std::uint32_t v = 0; v < layout.vertices.size(); ++v) {
+        const HeadVertex& vertex = layout.vertices[v];
+        if (vertex.loops == HeadLoops::None && vertex.chart.y >= 0) {
+            grid[{
+                static_cast<int>(std::lround(vertex.chart.x)),
+                static_cast<int>(std::lround(vertex.chart.y))}] = v;
+        }
+    }
+    const bool man = frame.look.shape.sex == PersonSex::Man;
+    const Vec3 color =
+        glm::mix(0.7f * frame.look.shape.hair_color, 0.3f * frame.look.skin_color, 0.3f);
+    for (const int side : {1, -1}) {
+        BodyRing last;
+        for (int column = kFirst; column <= kLast; ++column) {
+            const float t = static_cast<float>(column - kFirst) / (kLast - kFirst);
+            const float half = (man ? 1.15f : 0.75f) * std::lerp(1.0f, 0.25f, t * t)
+                               * std::min(0.6f + 3 * t, 1.0f);
+            const float middle = 22.8f - (man ? 0.2f : 0.8f) * std::sin(kPi * t) + 0.3f * t;
+            BodyRing ring;
+            ring.v = 0.04f * t;
+            const auto put = [&](float row, float out) {
+                const int above = static_cast<int>(std::floor(row));
+                const float s = row - static_cast<float>(above);
+                const std::uint32_t a = grid.at({side * column, above});
+                const std::uint32_t b = grid.at({side * column, above + 1});
+                const Vec3 normal = normalize_or(head.normals[a], Vec3(0, 0, 1));
+                BodyVertex vertex;
+                vertex.position = glm::mix(head.positions[a], head.positions[b], s) + out * normal;
+                vertex.color = color;
+                vertex.zone = BodyZone::Head;
+                ring.vertices.push_back(mesh.add(vertex));
+            };
+            put(middle - half, 0.0003f);
+            put(middle - 0.3f * half, 0.0010f);
+            put(middle + half, 0.0003f);
+            put(middle, -0.0025f);
+            if (last.vertices.empty()) {
+                mesh.cap(ring, Vec3(0), 0.004f, false);
+            } else {
+                mesh.join(last, ring, 0.004f);
+            }
+            last = ring;
+        }
+        mesh.cap(last, Vec3(0), 0.004f, true);
+    }
+    mesh.face_outwards();
+}
+
+/// As in the head's own chart; the neck ends at 1.
+Vec2 chart_uv(const Vec2& chart) {
+    return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 20)};
+}
+
+}  // namespace
+
+HeadShape person_head_shape(const PersonFrame& frame) {
+    HeadShape shape;
+    shape.age = frame.look.shape.age;
+    shape.sex = frame.look.sex;
+    shape.build = frame.look.shape.build;
+    shape.asymmetry = frame.look.asymmetry;
+    shape.scalp_shade = frame.look.shape.hair == PersonHair::Bald ? 0.25f : 0.7f;
+    return shape;
+}
+
+MeshData make_person_head(const PersonFrame& frame) {
+    WovenHead head = weave_head(frame);
+    BodyMesh brows;
+    add_brows(brows, frame, head);
+    reduce(head, frame);
+    MeshData mesh;
+    std::map<std::pair<std::uint32_t, bool>, std::uint32_t> made;  // copies beyond the seam
+    for (std::size_t i = 0; i < head.indices.size(); i += 3) {
+        float high = -kHeadColumns;
+        for (std::size_t k = 0; k < 3; ++k) {
+            high = std::max(high, head.charts[head.indices[i + k]].x);
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = head.indices[i + k];
+            const bool beyond = head.charts[v].x < high - 0.5f * kHeadColumns;
+            const auto [found, added] =
+                made.try_emplace({v, beyond}, static_cast<std::uint32_t>(mesh.positions.size()));
+            if (added) {
+                mesh.positions.push_back(head.positions[v]);
+                mesh.normals.push_back(normalize_or(head.normals[v], Vec3(0, 1, 0)));
+                mesh.colors.emplace_back(head.colors[v], 1.0f);
+                mesh.uvs.push_back(chart_uv(head.charts[v] + Vec2(beyond ? kHeadColumns : 0, 0)));
+                append_weights(mesh.skin, head_weights_at(frame, head.positions[v]));
+            }
+            mesh.indices.push_back(found->second);
+        }
+    }
+    mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
+    generate_tangents(mesh);
+    update_bounds(mesh);
+    append_part(mesh, brows.finish(frame, kPi));
+    return mesh;
+}
+
+}  // namespace limn

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "content/make/person/person_look.h"
+
+#include <array>
+
+namespace limn {
+
+// Joints of a person and their rest positions: an A-pose, arms 45 degrees below the horizontal,
+// palms toward the thighs, elbows, knees and fingers a little bent so that inverse kinematics knows
+// which way they fold. Rest rotations are the identity. Lengths after Gordon et al.,
+// "Anthropometric Survey of U.S. Army Personnel" (1989), and Greiner, "Hand Anthropometry of U.S.
+// Army Personnel" (1991), rounded. Limits after Norkin and White, "Measurement of Joint Motion"
+// (1985).
+
+/// In the middle of the body.
+enum class PersonJoint : std::uint16_t {
+    Hips,
+    Spine,
+    Chest,
+    UpperChest,
+    Neck,
+    Head,
+    LeftEye,
+    RightEye,
+};
+inline constexpr std::size_t kMiddleJoints = 8;
+
+/// Of one side, counted from kMiddleJoints; the left ones come first.
+enum class SideJoint : std::uint16_t {
+    Shoulder,
+    UpperArm,
+    UpperArmTwist,
+    Forearm,
+    ForearmTwist,
+    Hand,
+    Thumb1,
+    Thumb2,
+    Thumb3,
+    Index1,
+    Index2,
+    Index3,
+    Middle1,
+    Middle2,
+    Middle3,
+    Ring1,
+    Ring2,
+    Ring3,
+    Little1,
+    Little2,
+    Little3,
+    Thigh,
+    ThighTwist,
+    Shin,
+    Foot,
+    Toes,
+};
+inline constexpr std::size_t kSideJoints = 26;
+inline constexpr std::size_t kPersonJoints = kMiddleJoints + 2 * kSideJoints;
+
+[[nodiscard]] constexpr std::uint16_t joint_index(PersonJoint joint) {
+    return static_cast<std::uint16_t>(joint);
+}
+/// `side`: +1 left, -1 right.
+[[nodiscard]] constexpr std::uint16_t joint_index(SideJoint joint, int side) {
+    return static_cast<std::uint16_t>(
+        kMiddleJoints + static_cast<std::size_t>(joint) + (side > 0 ? 0 : kSideJoints));
+}
+
+/// Unit axes of a limb: along it, to the side of the thumb, to the back of the hand.
+struct LimbAxes {
+    Vec3 along = {};
+    Vec3 thumb = {};
+    Vec3 back = {};
+};
+
+/// The measures of one person at a height of kReferenceHeight, left side [m].
+struct PersonFrame {
+    PersonLook look;
+    float scale = 1;       ///< from the reference height to the person's
+    float man = 1;         ///< 0: a woman's proportions, 1: a man's
+    float build = 0;       ///< -1 .. 1
+    float head_scale = 1;  ///< of the head in reference units; heads vary less than heights
+    Vec3 head_origin = {};
+    std::array<Vec3, kPersonJoints> joints = {};
+    LimbAxes upper_arm;
+    LimbAxes forearm;
+    LimbAxes hand;
+    float upper_arm_length = 0;
+    float forearm_length = 0;
+
+    [[nodiscard]] const Vec3& at(PersonJoint joint) const { return joints[joint_index(joint)]; }
+    [[nodiscard]] const Vec3& at(SideJoint joint) const { return joints[joint_index(joint, 1)]; }
+};
+inline constexpr float kReferenceHeight = 1.75f;
+
+/// Lengths of the three bones of a finger; 0: thumb, 1 .. 4: index to little finger [m].
+[[nodiscard]] std::array<float, 3> finger_lengths(int finger);
+
+[[nodiscard]] PersonFrame measure_person(const PersonShape& shape);
+
+/// At the person's own height.
+[[nodiscard]] SkeletonData make_person_skeleton(const PersonFrame& frame);
+
+}  // namespace limn

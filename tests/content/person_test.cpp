@@ -1,0 +1,247 @@
+#include "content/make/person/person.h"
+#include "ecs/components/humanoid.h"
+#include "tests/content/mesh_laws.h"
+#include "tests/near.h"
+#include "tests/technique.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace limn::person_test {
+
+using namespace test;
+
+namespace {
+
+constexpr std::array<PersonPart, 6> kParts = {PersonPart::Skin,     PersonPart::Eyes,
+                                              PersonPart::Hair,     PersonPart::Shirt,
+                                              PersonPart::Trousers, PersonPart::Shoes};
+
+/// People who together wear everything there is.
+const std::array<PersonShape, 5> kPeople = {{
+    {.seed = 1,
+     .sex = PersonSex::Woman,
+     .hair = PersonHair::Long,
+     .legs = PersonLegwear::Skirt,
+     .sleeves = PersonSleeves::Short},
+    {.seed = 2,
+     .sex = PersonSex::Man,
+     .build = 1,
+     .age = 1,
+     .hair = PersonHair::Short,
+     .legs = PersonLegwear::Trousers,
+     .sleeves = PersonSleeves::Long},
+    {.seed = 3,
+     .sex = PersonSex::Man,
+     .height = 2,
+     .build = -1,
+     .hair = PersonHair::Bald,
+     .legs = PersonLegwear::Shorts,
+     .sleeves = PersonSleeves::Short},
+    {.seed = 4,
+     .sex = PersonSex::Woman,
+     .height = 1.5f,
+     .hair = PersonHair::Bun,
+     .legs = PersonLegwear::Trousers,
+     .sleeves = PersonSleeves::Short},
+    {.seed = 5,
+     .sex = PersonSex::Woman,
+     .build = 1,
+     .hair = PersonHair::Bob,
+     .legs = PersonLegwear::Trousers,
+     .sleeves = PersonSleeves::Long},
+}};
+
+PersonShape with_part(PersonShape shape, PersonPart part) {
+    shape.part = part;
+    return shape;
+}
+
+/// Lengths of arrays, unit vectors, finite numbers.
+void check_vertices(const MeshData& mesh) {
+    const std::size_t count = mesh.positions.size();
+    REQUIRE(mesh.normals.size() == count);
+    REQUIRE(mesh.tangents.size() == count);
+    REQUIRE(mesh.uvs.size() == count);
+    REQUIRE(mesh.colors.size() == count);
+    REQUIRE(*std::max_element(mesh.indices.begin(), mesh.indices.end()) < count);
+    float worst = 0;
+    bool finite = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        worst = std::max(worst, std::abs(glm::length(mesh.normals[i]) - 1.0f));
+        worst = std::max(worst, std::abs(glm::length(Vec3(mesh.tangents[i])) - 1.0f));
+        worst = std::max(worst, std::abs(std::abs(mesh.tangents[i].w) - 1.0f));
+        finite = finite && is_finite(mesh.positions[i]) && is_finite(mesh.uvs[i]);
+    }
+    CHECK(worst < 1e-5f);
+    CHECK(finite);
+}
+
+Vec3 rest_point(const SkeletonData& skeleton, std::int32_t joint) {
+    Vec3 p(0);
+    for (; joint >= 0; joint = skeleton.parents[static_cast<std::size_t>(joint)]) {
+        p += skeleton.rest.translations[static_cast<std::size_t>(joint)];
+    }
+    return p;
+}
+
+std::size_t joint_called(const SkeletonData& skeleton, const std::string& name) {
+    for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
+        if (skeleton.joints[i] == name) {
+            return i;
+        }
+    }
+    FAIL("no joint ", name);
+    return 0;
+}
+
+}  // namespace
+
+TEST_CASE("person: every part is a closed two-manifold that faces outwards") {
+    for (const PersonShape& shape : kPeople) {
+        for (const PersonPart part : kParts) {
+            CAPTURE(shape.seed);
+            CAPTURE(static_cast<int>(part));
+            const MeshData mesh = make_person(with_part(shape, part));
+            if (part == PersonPart::Hair && shape.hair == PersonHair::Bald) {
+                CHECK(mesh.indices.empty());
+                continue;
+            }
+            check_vertices(mesh);
+            CHECK(open_edges(mesh) == 0);
+            CHECK(crowded_edges(mesh) == 0);
+            CHECK(signed_volume(mesh) > 0);
+            if (part != PersonPart::Skin && part != PersonPart::Hair) {  // they have narrow creases
+                CHECK(worst_facing(mesh) > 0.2f);
+            }
+        }
+    }
+}
+
+TEST_CASE("person: at most four joints move a vertex, with weights that sum to 1") {
+    for (const PersonShape& shape : kPeople) {
+        const MeshData mesh = make_person(shape);
+        REQUIRE(mesh.skin.first.size() == mesh.positions.size() + 1);
+        float worst = 0;
+        bool few = true;
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            float sum = 0;
+            for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+                sum += mesh.skin.weights[i];
+                REQUIRE(mesh.skin.joints[i] < 60);
+            }
+            worst = std::max(worst, std::abs(sum - 1));
+            few = few && mesh.skin.first[v + 1] - mesh.skin.first[v] <= 4;
+        }
+        CHECK(few);
+        CHECK(worst < 1e-5f);
+    }
+}
+
+TEST_CASE("person: soles lie on the floor, the crown is as high as asked, few triangles") {
+    for (const PersonShape& shape : kPeople) {
+        CAPTURE(shape.seed);
+        const MeshData shoes = make_person(with_part(shape, PersonPart::Shoes));
+        CHECK(std::abs(shoes.bounds.min.y) < 1e-3f);
+        const MeshData whole = make_person(shape);
+        CHECK(whole.bounds.min.y > -1e-3f);
+        CHECK(whole.indices.size() / 3 > 8000);
+        CHECK(whole.indices.size() / 3 < 19000);
+        if (shape.height > 0) {
+            const MeshData skin = make_person(with_part(shape, PersonPart::Skin));
+            CHECK(skin.bounds.max.y == near(double(shape.height)).epsilon(0.012));
+        }
+        PersonShape far = shape;
+        far.triangles = 1500;
+        const MeshData reduced = make_person(far);
+        CHECK(reduced.indices.size() / 3 < 2600);
+        CHECK(open_edges(reduced) == 0);
+    }
+}
+
+TEST_CASE(
+    "person: the skeleton has 60 joints, all parts of a person, and is symmetric at rest"
+    * technique("char.skeleton-hierarchy")) {
+    for (const PersonShape& shape : kPeople) {
+        const MeshRig rig = make_person_rig(shape);
+        const SkeletonData& skeleton = rig.skeleton;
+        REQUIRE(check_skeleton(skeleton));
+        REQUIRE(check_skin(rig.skin, skeleton.joints.size()));
+        CHECK(skeleton.joints.size() == 60);
+        const BodyJoints body = find_body_joints(skeleton);
+        for (std::size_t part = 0; part < kBodyParts; ++part) {
+            CAPTURE(part);
+            CHECK(body.has(static_cast<BodyPart>(part)));
+        }
+        for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
+            const std::string& name = skeleton.joints[i];
+            if (name.starts_with("Left")) {
+                const std::size_t other = joint_called(skeleton, "Right" + name.substr(4));
+                const Vec3 left = rest_point(skeleton, static_cast<std::int32_t>(i));
+                const Vec3 right = rest_point(skeleton, static_cast<std::int32_t>(other));
+                CHECK(glm::distance(left, right * Vec3(-1, 1, 1)) < 1e-6f);
+            }
+        }
+        for (const ClipData& clip : rig.clips) {
+            CHECK(check_clip(clip, skeleton.joints.size(), 0));
+        }
+    }
+}
+
+TEST_CASE(
+    "person: elbows, knees and fingers bend the way of a body"
+    * technique("char.ik-joint-limits")) {
+    const SkeletonData skeleton = make_person_rig({}).skeleton;
+    const auto limit_of = [&](const char* name) {
+        const std::size_t joint = joint_called(skeleton, name);
+        for (const JointFreedom& freedom : skeleton.freedoms) {
+            if (freedom.joint == joint) {
+                return freedom;
+            }
+        }
+        FAIL("no limit of ", name);
+        return JointFreedom{};
+    };
+    /// How the end of a bone moves when its joint turns by a small positive angle.
+    const auto moves = [&](const char* joint, const char* end) {
+        const std::size_t child = joint_called(skeleton, end);
+        return glm::cross(limit_of(joint).axis, skeleton.rest.translations[child]);
+    };
+    for (const char* side : {"Left", "Right"}) {
+        const std::string s = side;
+        CHECK(moves((s + "Forearm").c_str(), (s + "Hand").c_str()).z > 0.1f);
+        CHECK(moves((s + "Shin").c_str(), (s + "Foot").c_str()).z < -0.1f);
+        CHECK(limit_of((s + "Forearm").c_str()).min > -0.2f);
+        CHECK(limit_of((s + "Shin").c_str()).max > 2.0f);
+        // Palms face the thighs: fingers bend toward the middle of the body.
+        const Vec3 bends = moves((s + "Middle2").c_str(), (s + "Middle3").c_str());
+        CHECK(bends.x * (s == "Left" ? 1.0f : -1.0f) < 0);
+    }
+}
+
+TEST_CASE("person: a seed is always the same person, another seed another one") {
+    const MeshData first = make_person({.seed = 7});
+    const MeshData again = make_person({.seed = 7});
+    CHECK(first.positions == again.positions);
+    CHECK(first.colors == again.colors);
+    CHECK(first.indices == again.indices);
+    std::array<float, 8> heights{};
+    for (int seed = 0; seed < 8; ++seed) {
+        const SkeletonData skeleton = make_person_rig({.seed = seed}).skeleton;
+        heights[static_cast<std::size_t>(seed)] = skeleton.rest.translations[0].y;
+        for (int other = 0; other < seed; ++other) {
+            CHECK(
+                heights[static_cast<std::size_t>(other)]
+                != heights[static_cast<std::size_t>(seed)]);
+        }
+    }
+    const MeshData other = make_person({.seed = 8});
+    CHECK(other.positions != first.positions);
+}
+
+}  // namespace limn::person_test
