@@ -9,6 +9,7 @@
 #include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "systems/animation/graph/motion_graph_system.h"
 #include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
@@ -97,6 +98,9 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_skin_pulls>(Move);  // takes what is displayed: the previous pose
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);
+    systems.add<add_motion_states>(Create, Both);
+    systems.add<prepare_motion_plans>(Create, Both);
+    systems.add<update_motion_graphs>(Move);
     systems.add<advance_clips>(Animate);
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
@@ -195,6 +199,9 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<StepJumps>(world);
     resource_or_default<WalkableMeshes>(world);
     resource_or_default<CrowdLibrary>(world);
+    resource_or_default<MotionGraphs>(world);
+    resource_or_default<MotionPlans>(world);
+
     return resource_or_default<FrameTime>(world);
 }
 

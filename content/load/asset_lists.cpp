@@ -1,6 +1,7 @@
 #include "content/load/asset_lists.h"
 
 #include "content/load/level/component_json.h"
+#include "ecs/world.h"
 
 #include <iterator>
 #include <utility>
@@ -19,6 +20,18 @@ void append_all(std::vector<T>& target, std::vector<T>& source) {
 }
 
 }  // namespace
+
+WorldAssetLists list_assets(const World& world) {
+    WorldAssetLists lists;
+    if (const Assets* const assets = world.find_resource<Assets>()) {
+        lists = {assets->meshes, assets->materials, assets->images, assets->skeletons,
+                 assets->skins,  assets->clips,     assets->paths,  {}};
+    }
+    if (const MotionGraphs* const graphs = world.find_resource<MotionGraphs>()) {
+        lists.motion_graphs = graphs->graphs;
+    }
+    return lists;
+}
 
 AssetOffsets asset_counts(const Assets& assets) {
     const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
@@ -53,6 +66,15 @@ AssetOffsets append_assets(Assets& target, Assets& source) {
     append_all(target.clips, source.clips);
     append_all(target.paths, source.paths);
     return offsets;
+}
+
+void append_graphs(
+    MotionGraphs& target, std::vector<MotionGraphData>& source, AssetOffsets& offsets) {
+    offsets.motion_graphs = static_cast<std::uint32_t>(target.graphs.size());
+    for (MotionGraphData& graph : source) {
+        offset_asset_ids(component_info<MotionGraphData>(), &graph, offsets);
+    }
+    append_all(target.graphs, source);
 }
 
 }  // namespace limn

@@ -1,14 +1,18 @@
 #pragma once
 
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/surface.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 namespace limn {
+
+class World;
 
 // Access to asset lists by kind: "mesh", "clip" ... (asset_kind in reflect.h).
 
@@ -30,6 +34,10 @@ void visit_asset_list(AssetsT& assets, std::string_view kind, Visit&& visit) {
         visit(assets.clips);
     } else if (kind == asset_kind<PathId>) {
         visit(assets.paths);
+    } else if (kind == asset_kind<MotionGraphId>) {
+        if constexpr (requires { assets.motion_graphs; }) {  // a resource of their own
+            visit(assets.motion_graphs);
+        }
     }
 }
 
@@ -58,6 +66,19 @@ asset_names(const AssetsT& assets, std::string_view kind) {
     return names;
 }
 
+/// All assets of a world, as lists of the names that Assets has; empty without resources.
+struct WorldAssetLists {
+    std::span<const MeshData> meshes;
+    std::span<const Material> materials;
+    std::span<const ImageData> images;
+    std::span<const SkeletonData> skeletons;
+    std::span<const SkinData> skins;
+    std::span<const ClipData> clips;
+    std::span<const PathData> paths;
+    std::span<const MotionGraphData> motion_graphs;
+};
+[[nodiscard]] WorldAssetLists list_assets(const World& world);
+
 /// Number of assets of each kind: the offset of an index when its list is appended to another.
 struct AssetOffsets {
     std::uint32_t meshes = 0;
@@ -67,6 +88,7 @@ struct AssetOffsets {
     std::uint32_t skins = 0;
     std::uint32_t clips = 0;
     std::uint32_t paths = 0;
+    std::uint32_t motion_graphs = 0;
 };
 
 /// The sizes of the lists.
@@ -78,5 +100,9 @@ void offset_asset_ids(const ComponentInfo& info, void* object, const AssetOffset
 /// Moves all assets of `source` to the end of the lists of `target` and remaps their references;
 /// returns the offsets at which they begin.
 AssetOffsets append_assets(Assets& target, Assets& source);
+
+/// The same for motion graphs, whose clips are those of `offsets`; sets offsets.motion_graphs.
+void append_graphs(
+    MotionGraphs& target, std::vector<MotionGraphData>& source, AssetOffsets& offsets);
 
 }  // namespace limn

@@ -34,6 +34,7 @@
 #include "ecs/components/mesh_levels.h"
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
@@ -135,6 +136,9 @@ void register_all_components() {
     register_component<CrowdPose>();
     register_component<CrowdPoseState>();
     register_component<MoveIntent>();
+    register_component<MotionGraph>();
+    register_component<MotionGraphState>();
+    register_component<MotionStyle>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

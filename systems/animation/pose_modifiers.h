@@ -2,18 +2,25 @@
 
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/ik.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/param_group.h"
 #include "ecs/query.h"
+#include "ecs/resource.h"
+#include "systems/animation/graph/motion_plan.h"
 
 namespace limn {
 
-/// What changes the poses of characters between their clips and their joint matrices, as one
+/// What determines the poses of characters besides a clip, and changes them before their joint
+/// matrices, as one
 /// parameter of update_poses.
 struct PoseModifiers {
     Query<const FootPlant, const FootContacts> plants;
     Query<const IkRig, const IkGoals> rigs;
     Query<const LookAt, const Gaze> looks;
     Query<const ReachGoal, const ReachState> reaches;
+    Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>> graphs;
+    OptionalRes<const MotionGraphs> graph_data;
+    OptionalRes<const MotionPlans> plans;
 };
 
 template <>
@@ -21,6 +28,8 @@ struct SystemParam<PoseModifiers>
     : ParamGroup<
           PoseModifiers, Query<const FootPlant, const FootContacts>,
           Query<const IkRig, const IkGoals>, Query<const LookAt, const Gaze>,
-          Query<const ReachGoal, const ReachState>> {};
+          Query<const ReachGoal, const ReachState>,
+          Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
+          OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>> {};
 
 }  // namespace limn

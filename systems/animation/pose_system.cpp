@@ -5,6 +5,7 @@
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/crowd_library.h"
+#include "systems/animation/graph/graph_pose.h"
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
 
@@ -168,12 +169,24 @@ class Modifiers {
     explicit Modifiers(const PoseModifiers& queries)
         : queries_(queries), any_(
                                  !queries.plants.empty() || !queries.rigs.empty()
-                                 || !queries.looks.empty() || !queries.reaches.empty()) {}
+                                 || !queries.looks.empty() || !queries.reaches.empty()),
+          any_graph_(!queries.graphs.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
-        return any_
-               && (queries_.plants.contains(entity) || queries_.rigs.contains(entity)
-                   || queries_.looks.contains(entity) || queries_.reaches.contains(entity));
+        return (any_
+                && (queries_.plants.contains(entity) || queries_.rigs.contains(entity)
+                    || queries_.looks.contains(entity) || queries_.reaches.contains(entity)))
+               || (any_graph_ && queries_.graphs.contains(entity));
+    }
+
+    /// The pose of the character's motion graph; false: it has none.
+    bool sample_graph(
+        Entity entity, SkeletonId skeleton, const Assets& assets, LocalPose& pose,
+        std::span<float> weights, bool& is_cut) const {
+        return any_graph_
+               && sample_motion_graph(
+                   queries_.graphs, queries_.graph_data.get(), queries_.plans.get(), assets, entity,
+                   skeleton, pose, weights, is_cut);
     }
 
     /// Applies what the character has, in this order. `last`: joint matrices of the last step,
@@ -202,20 +215,26 @@ class Modifiers {
   private:
     const PoseModifiers& queries_;
     bool any_;
+    bool any_graph_;
 };
 
-/// Samples the clip of one character that has a Pose, and applies its modifiers.
+/// Samples the graph or the clip of one character that has a Pose, and applies its modifiers.
 void step_character(
-    const Assets& assets, Entity entity, const SkeletonData& skeleton, const Playback& playback,
+    const Assets& assets, Entity entity, SkeletonId id, Playback playback,
     const Modifiers& modifiers, Pose& pose, MorphWeights* morph) {
     thread_local LocalPose scratch;  // reused between characters
+    const SkeletonData& skeleton = assets.skeletons[id.index];
     const bool is_new = begin_step(skeleton, pose, morph);
-    const ClipPlayer* const player = playback.player;
-    const ClipData* const clip =
-        player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
-    sample_pose(
-        skeleton, clip, player != nullptr ? player->time : 0.0f, scratch,
-        morph != nullptr ? std::span<float>(morph->weights) : std::span<float>());
+    const std::span<float> weights =
+        morph != nullptr ? std::span<float>(morph->weights) : std::span<float>();
+    if (modifiers.sample_graph(entity, id, assets, scratch, weights, playback.is_cut)) {
+        playback.player = nullptr;
+    } else {
+        const ClipPlayer* const player = playback.player;
+        const ClipData* const clip =
+            player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
+        sample_pose(skeleton, clip, player != nullptr ? player->time : 0.0f, scratch, weights);
+    }
     modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
     compute_joint_matrices(skeleton, scratch, pose.joints);
     finish_step(assets, skeleton, playback, is_new, pose, morph);
@@ -281,8 +300,8 @@ class CrowdStepper {
             const CrowdClip* const clip = find_clip(i, playback, *skeleton);
             if (clip == nullptr) {
                 step_character(
-                    assets_, all_.entities[i], *skeleton, playback, modifiers_, pose,
-                    all_.morph(i));
+                    assets_, all_.entities[i], all_.skeletons[i].skeleton, playback, modifiers_,
+                    pose, all_.morph(i));
                 continue;
             }
             if (!due.empty() && due.back().skeleton != skeleton) {
@@ -442,11 +461,10 @@ void update_poses(
             }
             parallel_for(poses.size(), kPoseGrain, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
-                    const SkeletonData* const skeleton =
-                        find_asset(assets->skeletons, skeletons[i].skeleton.index);
-                    if (skeleton != nullptr) {
+                    const SkeletonId skeleton = skeletons[i].skeleton;
+                    if (skeleton.index < assets->skeletons.size()) {
                         step_character(
-                            *assets, all.entities[i], *skeleton, all.playback(i, cuts, now.step),
+                            *assets, all.entities[i], skeleton, all.playback(i, cuts, now.step),
                             modifiers, poses[i], all.morph(i));
                     }
                 }

@@ -154,7 +154,7 @@ TEST_CASE("creature: at most four joints move a vertex, their weights sum to 1, 
 TEST_CASE("creature: skeleton, skin and clips are sound, and clips end as they begin") {
     CHECK(check_skeleton(rig().skeleton).ok());
     CHECK(check_skin(rig().skin, kCreatureJoints).ok());
-    REQUIRE(rig().clips.size() == 3);
+    REQUIRE(rig().clips.size() == 4);
     for (const ClipData& clip : rig().clips) {
         INFO(clip.name);
         const Status status = check_clip(clip, kCreatureJoints, creature().morphs.size());
@@ -172,7 +172,7 @@ TEST_CASE("creature: skeleton, skin and clips are sound, and clips end as they b
 TEST_CASE(
     "creature: a planted foot moves with the ground, and does not sink or rise"
     * technique("char.foot-flight")) {
-    for (const char* name : {"walk", "run", "idle"}) {
+    for (const char* name : {"walk", "trot", "run", "idle"}) {
         INFO(std::string(name));
         const Gait& gait = gait_named(name);
         const ClipData& clip = clip_named(name);
@@ -229,6 +229,32 @@ TEST_CASE("creature: a walk sets down left hind, left fore, right hind, right fo
         }
         CHECK(down >= 2);  // a walk never leaves the ground
     }
+}
+
+TEST_CASE("creature: a trot sets down diagonal pairs, and clips have the stances as contacts") {
+    for (const Gait& gait : creature_gaits()) {
+        INFO(std::string(gait.name));
+        const ClipData& clip = clip_named(gait.name);
+        for (std::size_t leg = 0; leg < kLegs; ++leg) {
+            for (int i = 0; i < 96; ++i) {
+                const float phase = (static_cast<float>(i) + 0.5f) / 96;
+                const float time = phase * clip.duration;
+                const bool stands = stance_progress(gait, static_cast<Leg>(leg), phase) >= 0;
+                const bool touches = std::any_of(
+                    clip.contacts.begin(), clip.contacts.end(), [&](const ClipContact& contact) {
+                        return contact.joint == static_cast<std::uint16_t>(kFeet[leg])
+                               && contact.begin <= time && time <= contact.end;
+                    });
+                CHECK(stands == touches);
+            }
+        }
+    }
+    const Gait& trot = gait_named("trot");
+    CHECK(trot.touchdown[0] == trot.touchdown[3]);  // left fore, right hind
+    CHECK(trot.touchdown[1] == trot.touchdown[2]);
+    CHECK(trot.touchdown[0] == trot.touchdown[1] + 0.5f);
+    CHECK(gait_speed(trot) > 2 * gait_speed(gait_named("walk")));
+    CHECK(gait_speed(trot) < 0.6f * gait_speed(gait_named("run")));
 }
 
 TEST_CASE("creature: a run sets down both hind feet, then both fore feet, then flies") {

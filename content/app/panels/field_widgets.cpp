@@ -186,7 +186,8 @@ bool edit_enum(const FieldInfo& field, void* element) {
     return changed;
 }
 
-const std::string* asset_name(const Assets& assets, std::string_view kind, std::uint32_t index) {
+const std::string*
+asset_name(const WorldAssetLists& assets, std::string_view kind, std::uint32_t index) {
     const std::string* name = nullptr;
     visit_asset_list(assets, kind, [&](const auto& list) {
         name = index < list.size() ? &list[index].name : nullptr;
@@ -194,14 +195,14 @@ const std::string* asset_name(const Assets& assets, std::string_view kind, std::
     return name;
 }
 
-std::size_t asset_count(const Assets& assets, std::string_view kind) {
+std::size_t asset_count(const WorldAssetLists& assets, std::string_view kind) {
     std::size_t count = 0;
     visit_asset_list(assets, kind, [&](const auto& list) { count = list.size(); });
     return count;
 }
 
 void format_asset(
-    std::array<char, 128>& label, const Assets& assets, std::string_view kind,
+    std::array<char, 128>& label, const WorldAssetLists& assets, std::string_view kind,
     std::uint32_t index) {
     const std::string* name = asset_name(assets, kind, index);
     const auto result = name == nullptr ? fmt::format_to_n(label.data(), label.size() - 1, "none")
@@ -212,25 +213,21 @@ void format_asset(
 }
 
 bool edit_asset(const Context& context, const FieldInfo& field, void* element) {
-    const Assets* assets = context.world.find_resource<Assets>();
-    if (assets == nullptr) {
-        ImGui::TextDisabled("no assets");
-        return false;
-    }
+    const WorldAssetLists assets = list_assets(context.world);
     std::uint32_t& index = *static_cast<std::uint32_t*>(element);
     std::array<char, 128> label;
-    format_asset(label, *assets, field.asset, index);
+    format_asset(label, assets, field.asset, index);
     bool changed = false;
     if (!ImGui::BeginCombo("##value", label.data())) {
         return false;
     }
-    const int count = static_cast<int>(asset_count(*assets, field.asset));
+    const int count = static_cast<int>(asset_count(assets, field.asset));
     ImGuiListClipper clipper;
     clipper.Begin(count);
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             ImGui::PushID(i);
-            format_asset(label, *assets, field.asset, static_cast<std::uint32_t>(i));
+            format_asset(label, assets, field.asset, static_cast<std::uint32_t>(i));
             const bool selected = static_cast<std::uint32_t>(i) == index;
             if (ImGui::Selectable(label.data(), selected) && !selected) {
                 index = static_cast<std::uint32_t>(i);
@@ -472,9 +469,8 @@ std::string entity_label(const World& world, Entity entity) {
                        : world.has<Camera>(entity)           ? "camera"
                                                              : "entity";
     const MeshInstance* instance = world.find<MeshInstance>(entity);
-    const Assets* assets = world.find_resource<Assets>();
-    const std::string* mesh = instance != nullptr && assets != nullptr
-                                  ? asset_name(*assets, "mesh", instance->mesh.index)
+    const std::string* mesh = instance != nullptr
+                                  ? asset_name(list_assets(world), "mesh", instance->mesh.index)
                                   : nullptr;
     return fmt::format(
         "{} {}", mesh != nullptr && !mesh->empty() ? mesh->c_str() : kind, entity.index);

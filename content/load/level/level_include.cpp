@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kSections[] = {"images", "materials", "paths", "meshes", "prefabs"};
+constexpr std::string_view kSections[] = {"images", "materials",     "paths",
+                                          "meshes", "motion_graphs", "prefabs"};
 constexpr std::string_view kTexts[] = {"title", "description", "$schema"};  // not used
 constexpr std::size_t kMaxFiles = 64;
 

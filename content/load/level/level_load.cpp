@@ -7,6 +7,7 @@
 #include "content/load/level/level_events.h"
 #include "content/load/level/level_hints.h"
 #include "content/load/level/level_names.h"
+#include "content/load/level/motion_graph_json.h"
 #include "content/make/models/fragments.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
@@ -36,10 +37,10 @@ constexpr LevelKey kLevelKeys[] = {
     {"include", JsonKind::Array},  // read by load_level
     {"resources", JsonKind::Object}, {"images", JsonKind::Object},
     {"materials", JsonKind::Object}, {"paths", JsonKind::Object},
-    {"meshes", JsonKind::Object},    {"prefabs", JsonKind::Object},
-    {"entities", JsonKind::Array},   {"events", JsonKind::Array},
-    {"bindings", JsonKind::Object},  {"shows", JsonKind::Array},
-    {"$schema", JsonKind::String},  // for editors
+    {"meshes", JsonKind::Object},    {"motion_graphs", JsonKind::Object},
+    {"prefabs", JsonKind::Object},   {"entities", JsonKind::Array},
+    {"events", JsonKind::Array},     {"bindings", JsonKind::Object},
+    {"shows", JsonKind::Array},      {"$schema", JsonKind::String},  // for editors
 };
 struct PatternMap {
     const char* suffix;  ///< of its name
@@ -122,6 +123,7 @@ class LevelParser {
         read_section("materials", &LevelParser::read_material);
         read_section("paths", &LevelParser::read_path);
         read_section("meshes", &LevelParser::read_mesh);
+        read_section("motion_graphs", &LevelParser::read_graph);
         read_section("resources", &LevelParser::read_resource);
         read_section("bindings", &LevelParser::read_binding);
         read_entities();
@@ -417,6 +419,14 @@ class LevelParser {
         return Done{};
     }
 
+    Status read_graph(const JsonMember& member, const JsonLocation& at) {
+        MotionGraphData graph = LIMN_TRY(read_motion_graph(member.value, at, asset_names()));
+        graph.name = member.key;
+        motion_graphs_[member.key] = static_cast<std::uint32_t>(level_.motion_graphs.size());
+        level_.motion_graphs.push_back(std::move(graph));
+        return Done{};
+    }
+
     Status read_mesh(const JsonMember& member, const JsonLocation& at) {
         const JsonValue* const make = member.value.find("make");
         if (make == nullptr) {
@@ -531,16 +541,18 @@ class LevelParser {
         return kind == asset_kind<MeshId>       ? "meshes"
                : kind == asset_kind<MaterialId> ? "materials"
                : kind == asset_kind<ImageId>    ? "images"
-                                                : "paths";
+               : kind == asset_kind<PathId>     ? "paths"
+                                                : "motion_graphs";
     }
 
     NameResolver asset_names() {
         const auto names_of_kind = [this](std::string_view kind) -> const Names* {
-            return kind == asset_kind<MeshId>       ? &meshes_
-                   : kind == asset_kind<MaterialId> ? &materials_
-                   : kind == asset_kind<ImageId>    ? &images_
-                   : kind == asset_kind<PathId>     ? &paths_
-                                                    : nullptr;
+            return kind == asset_kind<MeshId>          ? &meshes_
+                   : kind == asset_kind<MaterialId>    ? &materials_
+                   : kind == asset_kind<ImageId>       ? &images_
+                   : kind == asset_kind<PathId>        ? &paths_
+                   : kind == asset_kind<MotionGraphId> ? &motion_graphs_
+                                                       : nullptr;
         };
         NameResolver names;
         names.asset = [this, names_of_kind](
@@ -582,6 +594,7 @@ class LevelParser {
     Names materials_;
     Names paths_;
     Names meshes_;
+    Names motion_graphs_;
     Names patterns_;  // by name; the index of the first of the three images
 };
 

@@ -13,6 +13,7 @@
 #include "ecs/any_component.h"
 #include "ecs/base/result.h"
 #include "ecs/components/input.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/script.h"
 #include "ecs/components/surface.h"
 #include "ecs/prefab.h"
@@ -48,6 +49,7 @@ class World;
 //       "include": ["fire.effect.json"],        // its prefabs and their assets: level_include.h
 //       "meshes": {"pot": {"make": "teapot", "divisions": 12},
 //                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
+//       "motion_graphs": {"fox": GRAPH},        // ecs/components/motion_graph.h
 //       "prefabs": {"lamp": NODE},
 //       "entities": [NODE, ...],
 //       "events": [EVENT, ...],
@@ -146,6 +148,7 @@ struct Level {
     /// Names of skeletons, skins and clips; components hold indices into this list until
     /// load_level_assets has read the files that define them.
     std::vector<DeferredName> deferred_names;
+    std::vector<MotionGraphData> motion_graphs;  ///< their clips likewise
 
     Assets assets;  ///< materials after parse_level, the rest after load_level_assets
     std::vector<GltfScene> scenes;  ///< one for each of `gltfs`, after load_level_assets

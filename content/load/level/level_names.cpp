@@ -53,6 +53,9 @@ class DeferredNames {
         for (AnyComponent& resource : level_.resources) {
             resolve(resource, resource.info().name, {});
         }
+        for (MotionGraphData& graph : level_.motion_graphs) {
+            resolve(component_info<MotionGraphData>(), &graph, "motion_graphs." + graph.name, {});
+        }
         resolve(level_.entities, true);
         for (NodeChange& change : level_.node_changes) {
             if (!change.set.value.is_empty()) {
@@ -112,27 +115,30 @@ class DeferredNames {
     }
 
     void resolve(AnyComponent& component, std::string_view location, SceneNumber own) {
-        for_each_asset(
-            component.info().fields, component.data(),
-            [&](std::string_view kind, std::uint32_t& index) {
-                const auto lists = lists_.find(std::string(kind));
-                if (lists == lists_.end() || index == kNoAsset) {
-                    return;
-                }
-                const auto& [name, at] = level_.deferred_names[index];
-                const std::optional<std::uint32_t> found = find(lists->second, name, own);
-                if (found) {
-                    index = *found;
-                    return;
-                }
-                const std::vector<std::string_view> known = known_names(lists->second, own);
-                errors_.keep(fail(
-                    "{}: {}: found the {} {}, expected {}{}", location_text(level_.file, at),
-                    location, kind, in_quotes(name),
-                    known.empty() ? "one of a glTF file or a generated mesh, which have none"
-                                  : "one of " + some_of(known),
-                    did_you_mean(name, known)));
-            });
+        resolve(component.info(), component.data(), location, own);
+    }
+
+    void
+    resolve(const ComponentInfo& info, void* object, std::string_view location, SceneNumber own) {
+        for_each_asset(info.fields, object, [&](std::string_view kind, std::uint32_t& index) {
+            const auto lists = lists_.find(std::string(kind));
+            if (lists == lists_.end() || index == kNoAsset) {
+                return;
+            }
+            const auto& [name, at] = level_.deferred_names[index];
+            const std::optional<std::uint32_t> found = find(lists->second, name, own);
+            if (found) {
+                index = *found;
+                return;
+            }
+            const std::vector<std::string_view> known = known_names(lists->second, own);
+            errors_.keep(fail(
+                "{}: {}: found the {} {}, expected {}{}", location_text(level_.file, at), location,
+                kind, in_quotes(name),
+                known.empty() ? "one of a glTF file or a generated mesh, which have none"
+                              : "one of " + some_of(known),
+                did_you_mean(name, known)));
+        });
     }
 
     /// Those of the entity's own file, or else all.

@@ -7,6 +7,7 @@
 #include "content/make/make_mesh.h"
 #include "content/make/patterns/patterns.h"
 #include "ecs/components/input.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
@@ -478,6 +479,10 @@ JsonValue level_schema() {
              "meshes",
              described(
                  map_of(any_of(schemas_of_kinds(mesh_kinds()))), "generated shapes, by name")),
+         schema_member(
+             "motion_graphs", described(
+                                  map_of(closed_object(properties_of<MotionGraphData>())),
+                                  "states, clips and transitions of characters, by name")),
          schema_member(
              "prefabs",
              described(map_of(reference("node")), "nodes to instantiate many times, by name")),

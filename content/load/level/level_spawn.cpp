@@ -136,7 +136,14 @@ std::vector<Entity> spawn_level(World& world, Level level) {
         world.insert_resource(Assets{});
     }
     Assets& assets = world.resource<Assets>();
-    const AssetOffsets offsets = append_assets(assets, level.assets);
+    AssetOffsets offsets = append_assets(assets, level.assets);
+    if (!level.motion_graphs.empty()) {
+        if (world.find_resource<MotionGraphs>() == nullptr) {
+            world.insert_resource(MotionGraphs{});
+        }
+        append_graphs(world.resource<MotionGraphs>(), level.motion_graphs, offsets);
+    }
+
     for (AnyComponent& resource : level.resources) {
         set_resource(world, resource, offsets);
     }

@@ -217,6 +217,7 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     add_names(assets.materials);
     add_names(assets.meshes);
     add_names(assets.paths);
+    add_names(level.motion_graphs);
     return fields;
 }
 

@@ -218,8 +218,7 @@ Status set_value(World& world, std::string_view path, std::string_view value) {
 NameResolver make_name_resolver(const World& world) {
     NameResolver names;
     names.asset = [&world](std::string_view kind, std::string_view name, SourcePosition) {
-        const Assets* const assets = world.find_resource<Assets>();
-        return assets != nullptr ? find_asset(*assets, kind, name) : std::nullopt;
+        return find_asset(list_assets(world), kind, name);
     };
     names.entity = [&world](std::string_view name, SourcePosition) -> std::optional<Entity> {
         const std::vector<Entity> entities = find_entities(world, name);
@@ -229,8 +228,8 @@ NameResolver make_name_resolver(const World& world) {
         std::vector<std::string_view> all;
         if (kind == "entity") {
             world.query<const Name>().each([&](const Name& name) { all.emplace_back(name.text); });
-        } else if (const Assets* const assets = world.find_resource<Assets>()) {
-            all = asset_names(*assets, kind);
+        } else {
+            all = asset_names(list_assets(world), kind);
         }
         return all;
     };
@@ -241,11 +240,10 @@ NameProvider make_name_provider(const World& world) {
     NameProvider names;
     names.asset = [&world](std::string_view kind, std::uint32_t index) {
         std::string found;
-        if (const Assets* const assets = world.find_resource<Assets>()) {
-            visit_asset_list(*assets, kind, [&](const auto& list) {
-                found = index < list.size() ? list[index].name : "";
-            });
-        }
+        const WorldAssetLists assets = list_assets(world);
+        visit_asset_list(assets, kind, [&](const auto& list) {
+            found = index < list.size() ? list[index].name : "";
+        });
         return found;
     };
     names.entity = [&world](Entity entity) {

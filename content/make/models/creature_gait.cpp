@@ -218,6 +218,22 @@ Pitches pitches_at(
     return pitches;
 }
 
+/// Stances of the feet in a clip.
+std::vector<ClipContact> stances_of(const Gait& gait) {
+    std::vector<ClipContact> contacts;
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+        const auto foot = static_cast<std::uint16_t>(fox::kLegInfos[leg].joints[3]);
+        const float begin = gait.duty < 1.0f ? gait.touchdown[leg] : 0.0f;
+        const float end = begin + std::min(gait.duty, 1.0f);
+        contacts.push_back({foot, begin * gait.period, std::min(end, 1.0f) * gait.period});
+        if (end > 1.0f) {
+            contacts.push_back({foot, 0.0f, (end - 1.0f) * gait.period});
+        }
+    }
+    std::ranges::stable_sort(contacts, {}, &ClipContact::begin);
+    return contacts;
+}
+
 }  // namespace
 
 std::span<const Gait> creature_gaits() {
@@ -238,6 +254,7 @@ ClipData make_gait_clip(const Gait& gait, float scale) {
     ClipData clip;
     clip.name = gait.name;
     clip.duration = gait.period;
+    clip.contacts = stances_of(gait);
     ClipSheet& sheet = clip.sheets.emplace_back();
     sheet.translating = {static_cast<std::uint16_t>(Hips)};
     sheet.morphing = {0, 1};

@@ -13,8 +13,8 @@ namespace limn {
 // kinematics (char.walk-cycle): the last bone has a given slope, the two above it form a triangle.
 // The trunk bends in the plane of symmetry only, so that planted feet do not slide. Footfalls after
 // E. Muybridge, "Animals in Motion" (1899): a walk sets down left hind, left fore, right hind,
-// right fore, a quarter of the cycle apart; a transverse gallop both hind feet, then both fore
-// feet, then none.
+// right fore, a quarter of the cycle apart; a trot diagonal pairs; a transverse gallop both hind
+// feet, then both fore feet, then none.
 
 enum class Leg : std::uint8_t { LeftFront, RightFront, LeftHind, RightHind };
 inline constexpr std::size_t kLegs = 4;
@@ -37,7 +37,7 @@ struct Gait {
     int breaths;                         ///< per cycle
 };
 
-/// "idle", "walk", "run".
+/// "idle", "walk", "trot", "run".
 [[nodiscard]] std::span<const Gait> creature_gaits();
 
 /// Forward speed of a creature of 0.45 m [m/s].
@@ -53,7 +53,8 @@ struct Gait {
 [[nodiscard]] float swing_height(float s);
 
 /// A looping clip for a creature scaled by `scale`. Animates all joints, and the morph weights 0
-/// (blink) and 1 (breath).
+/// (blink) and 1 (breath). Its contacts are the stances of the feet; one that lasts beyond the end
+/// of the cycle is continued by another one from its beginning.
 [[nodiscard]] ClipData make_gait_clip(const Gait& gait, float scale);
 
 }  // namespace limn
