@@ -126,6 +126,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.obfuscating-point", "lamp that dazzles as far as it is visible"},
     {"engine.object-step", "init, step and draw of an object"},
     {"engine.object-text", "level file format"},
+    {"engine.opt-texture", "texture compression, BC5, BC7, DDS, mip levels"},
     {"engine.param-access", "fields by name"},
     {"engine.param-desc", "reflection: descriptions of fields"},
     {"engine.particle-cpu", "CPU particles as billboards"},
