@@ -237,6 +237,17 @@ LIMN_FIELDS(LayerPlayback) {
     LIMN_FIELD(playing, "1 between its events", "", 0, 1);
 }
 
+/// What the displayed pose is off the played one at the beginning of a transition.
+struct InertialOffset {
+    Vec3 offset = {0, 0, 0};
+    Vec3 rate = {0, 0, 0};
+};
+
+LIMN_FIELDS(InertialOffset) {
+    LIMN_FIELD(offset, "rotation vector [rad], translation [m] or, along x, morph weight");
+    LIMN_FIELD(rate, "its derivative", "1/s");
+}
+
 /// What a MotionGraph plays: all that a snapshot needs to continue in the middle of a transition.
 struct MotionGraphState {
     GraphPlayback current{};
@@ -244,10 +255,10 @@ struct MotionGraphState {
     std::uint32_t transition = kNoGraphState;
     float clock = 0.0f;
     std::uint32_t cut = 0;
-    std::vector<Vec4> turns{};
+    std::vector<InertialOffset> turns{};
     std::vector<std::uint16_t> shifted{};
-    std::vector<Vec4> shifts{};
-    std::vector<Vec2> morphs{};
+    std::vector<InertialOffset> shifts{};
+    std::vector<InertialOffset> morphs{};
     std::vector<Vec3> frozen_translations{};
     std::vector<Quat> frozen_rotations{};
     std::vector<Vec3> frozen_scales{};
@@ -262,10 +273,10 @@ LIMN_FIELDS(MotionGraphState) {
     LIMN_FIELD(transition, "index of the transition that is not over");
     LIMN_FIELD(clock, "since it began", "s");
     LIMN_FIELD(cut, "1: the last step changed the pose without a blend", "", 0, 1);
-    LIMN_FIELD(turns, "inertialized: rotation vector of each joint [rad], its rate [rad/s]");
+    LIMN_FIELD(turns, "inertialized: rotation of each joint");
     LIMN_FIELD(shifted, "joints with an inertialized translation");
-    LIMN_FIELD(shifts, "their offsets [m], rates [m/s]");
-    LIMN_FIELD(morphs, "inertialized: offset of each morph weight, its rate [1/s]");
+    LIMN_FIELD(shifts, "their offsets");
+    LIMN_FIELD(morphs, "inertialized: offset of each morph weight");
     LIMN_FIELD(frozen_translations, "pose from which an interrupted transition continues", "m");
     LIMN_FIELD(frozen_rotations, "likewise");
     LIMN_FIELD(frozen_scales, "likewise");

@@ -97,25 +97,56 @@ TEST_CASE("inertialization: it never overshoots") {
     CHECK(inertial_amplitude(1.0f, -50.0f, 0.4f, 0.102f) == 0.0f);
 }
 
+TEST_CASE(
+    "inertialization: what moves away or across goes on at its rate, and comes back to rest") {
+    constexpr float kDuration = 0.5f;
+    constexpr float kStep = 1e-3f;
+    const auto at = [](float t) { return static_cast<double>(inertial_drift(kDuration, t)); };
+    CHECK(at(0) == 0);
+    CHECK(at(kStep) / static_cast<double>(kStep) == near(1).epsilon(1e-3));
+    CHECK((at(2 * kStep) - 2 * at(kStep)) / 1e-6 == near(0).scale(20).epsilon(0.01));
+    CHECK(std::abs(at(kDuration - kStep)) < 1e-6);  // like (t1 - t)^3
+    CHECK(at(kDuration) == 0);
+    double largest = 0;
+    for (float t = 0; t < kDuration; t += kStep) {
+        CHECK(at(t) >= 0);
+        largest = std::max(largest, at(t));
+    }
+    CHECK(largest < 0.2 * static_cast<double>(kDuration));
+    CHECK(largest > 0.15 * static_cast<double>(kDuration));
+
+    // All of a rate is kept at the beginning, whatever its direction.
+    Random random(7, 0, 0, 0);
+    for (int i = 0; i < 100; ++i) {
+        const Vec3 offset = random.direction();
+        const Vec3 rate = 3.0f * random.direction();
+        const InertialOffset moving = {offset, rate};
+        const Vec3 first = inertial_vector(moving, kDuration, 0);
+        CHECK(glm::distance(first, offset) < 1e-6f);
+        const Vec3 next = inertial_vector(moving, kDuration, 1e-3f);
+        CHECK(glm::distance((next - first) / 1e-3f, rate) < 0.1f);
+        CHECK(inertial_vector(moving, kDuration, kDuration) == Vec3(0));
+    }
+}
+
 TEST_CASE("inertialization: offsets of poses show the old pose first and the new one last") {
     Random random(5, 0, 0, 0);
     constexpr float kInterval = 1.0f / 240.0f;
     for (int i = 0; i < 200; ++i) {
         const Quat shown = random_rotation(random);
         const Quat target = random_rotation(random);
-        const Vec4 turn = inertial_turn(shown, shown, target, target, kInterval);
+        const InertialOffset turn = inertial_turn(shown, shown, target, target, kInterval);
         const Quat first = apply_turn(turn, target, 0.3f, 0.0f);
         CHECK(std::abs(glm::dot(first, shown)) == near(1).epsilon(1e-6));
-        CHECK(glm::length(Vec3(turn)) <= kPi + 1e-5f);
-        CHECK(std::abs(turn.w) < 1e-3f);
+        CHECK(glm::length(turn.offset) <= kPi + 1e-5f);
+        CHECK(turn.rate == Vec3(0));
         CHECK(apply_turn(turn, target, 0.3f, 0.3f) == target);
         const Vec3 a = random.direction();
         const Vec3 b = random.direction();
-        const Vec4 shift = inertial_shift(a, a, b, b, kInterval);
+        const InertialOffset shift = inertial_shift(a, a, b, b, kInterval);
         CHECK(glm::distance(apply_shift(shift, b, 0.3f, 0.0f), a) < 1e-6f);
         CHECK(apply_shift(shift, b, 0.3f, 0.3f) == b);
     }
-    CHECK(apply_number(inertial_number(-2, -2, 1, 1, kInterval), 1, 0.3f, 0) == near(-2));
 }
 
 TEST_CASE(
@@ -124,22 +155,22 @@ TEST_CASE(
     const Vec3 axis = glm::normalize(Vec3(1, 2, -1));
     const auto turned = [&](float angle) { return rotation_about(axis, angle); };
     // The old one comes nearer at 2 rad/s, the new one goes to meet it at 1 rad/s.
-    const Vec4 turn = inertial_turn(
+    const InertialOffset turn = inertial_turn(
         turned(0.8f), turned(0.8f + 2 * kInterval), turned(0.1f), turned(0.1f - kInterval),
         kInterval);
-    CHECK(turn.w == near(-3).epsilon(1e-3));
-    CHECK(glm::distance(Vec3(turn), 0.7f * axis) < 1e-5f);
-    const Vec4 shift = inertial_shift(
+    CHECK(glm::distance(turn.rate, -3.0f * axis) < 3e-3f);
+    CHECK(glm::distance(turn.offset, 0.7f * axis) < 1e-5f);
+    const InertialOffset shift = inertial_shift(
         Vec3(1, 0, 0), Vec3(1 + 2 * kInterval, 0, 0), Vec3(0), Vec3(-kInterval, 0, 0), kInterval);
-    CHECK(shift.w == near(-3).epsilon(1e-3));
-    CHECK(inertial_number(-1, -1 - kInterval, 0, 0, kInterval).y == near(-1).epsilon(1e-3));
+    CHECK(glm::distance(shift.rate, Vec3(-3, 0, 0)) < 3e-3f);
 }
 
 TEST_CASE("inertialization: equal poses have no offset, opposite ones a finite one") {
     const Quat q = rotation_about({0, 1, 0}, 0.4f);
-    CHECK(inertial_turn(q, q, q, q, 0.01f) == Vec4(0));
-    CHECK(inertial_turn(-q, -q, q, q, 0.01f) == Vec4(0));
-    CHECK(inertial_shift(Vec3(1), Vec3(2), Vec3(1), Vec3(0), 0.01f) == Vec4(0));
+    CHECK(is_negligible(inertial_turn(q, q, q, q, 0.01f)));
+    CHECK(is_negligible(inertial_turn(-q, q, q, -q, 0.01f)));
+    CHECK(is_negligible(inertial_shift(Vec3(1), Vec3(2), Vec3(1), Vec3(2), 0.01f)));
+    CHECK_FALSE(is_negligible(inertial_shift(Vec3(1), Vec3(2), Vec3(1), Vec3(0), 0.01f)));
     const Quat half = rotation_about({1, 0, 0}, kPi) * q;
     const Quat shown = apply_turn(inertial_turn(half, half, q, q, 0.01f), q, 0.2f, 0.05f);
     CHECK(glm::length(shown) == near(1));

@@ -14,6 +14,7 @@ namespace limn {
 namespace {
 
 constexpr float kSmallestOffset = 1e-6f;  ///< [m], [rad]; smaller ones have no direction
+constexpr float kSmallestRate = 1e-4f;    ///< [m/s], [rad/s]; of rounding
 
 }  // namespace
 
@@ -39,58 +40,53 @@ float inertial_amplitude(float x0, float v0, float duration, float time) {
     return std::max(((((c5 * s + c4) * s + c3) * s + 0.5f * a) * s + v) * s + x0, 0.0f);
 }
 
-Vec4 inertial_shift(
+float inertial_drift(float duration, float time) {
+    if (time <= 0.0f || !(time < duration)) {
+        return time <= 0.0f ? time : 0.0f;
+    }
+    const float s = time / duration;
+    return time * std::max(((8.0f - 3.0f * s) * s - 6.0f) * s * s + 1.0f, 0.0f);
+}
+
+Vec3 inertial_vector(const InertialOffset& offset, float duration, float time) {
+    const float x0 = glm::length(offset.offset);
+    if (!(x0 > kSmallestOffset)) {
+        return offset.rate * inertial_drift(duration, time);
+    }
+    const Vec3 direction = offset.offset / x0;
+    const float inward = std::min(glm::dot(offset.rate, direction), 0.0f);
+    return direction * inertial_amplitude(x0, inward, duration, time)
+           + (offset.rate - inward * direction) * inertial_drift(duration, time);
+}
+
+InertialOffset inertial_shift(
     const Vec3& shown, const Vec3& shown_earlier, const Vec3& target, const Vec3& target_earlier,
     float interval) {
     const Vec3 offset = shown - target;
-    const float x0 = glm::length(offset);
-    if (!(x0 > kSmallestOffset)) {
-        return Vec4(0);
-    }
-    const float earlier = glm::dot(shown_earlier - target_earlier, offset) / x0;
-    return {offset, (x0 - earlier) / interval};
+    return {offset, (offset - (shown_earlier - target_earlier)) / interval};
 }
 
-Vec3 apply_shift(const Vec4& shift, const Vec3& target, float duration, float time) {
-    const Vec3 offset(shift);
-    const float x0 = glm::length(offset);
-    const float x = inertial_amplitude(x0, shift.w, duration, time);
-    return x == 0.0f ? target : target + offset * (x / x0);
+Vec3 apply_shift(const InertialOffset& shift, const Vec3& target, float duration, float time) {
+    return target + inertial_vector(shift, duration, time);
 }
 
-Vec4 inertial_turn(
+InertialOffset inertial_turn(
     const Quat& shown, const Quat& shown_earlier, const Quat& target, const Quat& target_earlier,
     float interval) {
-    Quat offset = shown * glm::conjugate(target);
-    offset = offset.w < 0.0f ? -offset : offset;
-    const AxisAngle turn = axis_angle(offset);
-    if (!(turn.angle > kSmallestOffset)) {
-        return Vec4(0);
-    }
-    const Quat before = to_same_hemisphere(offset, shown_earlier * glm::conjugate(target_earlier));
-    const Vec3 v(before.x, before.y, before.z);
-    const float earlier = 2.0f * std::atan2(glm::dot(v, turn.axis), before.w);
-    return {turn.angle * turn.axis, (turn.angle - earlier) / interval};
+    const Quat offset = to_same_hemisphere(Quat(1, 0, 0, 0), shown * glm::conjugate(target));
+    const Quat earlier = to_same_hemisphere(offset, shown_earlier * glm::conjugate(target_earlier));
+    const Vec3 turn = 2.0f * log_rotation(offset);
+    return {turn, (turn - 2.0f * log_rotation(earlier)) / interval};
 }
 
-Quat apply_turn(const Vec4& turn, const Quat& target, float duration, float time) {
-    const Vec3 offset(turn);
-    const float x0 = glm::length(offset);
-    const float x = inertial_amplitude(x0, turn.w, duration, time);
-    return x == 0.0f ? target
-                     : normalize_or_identity(exp_rotation(offset * (0.5f * x / x0)) * target);
+Quat apply_turn(const InertialOffset& turn, const Quat& target, float duration, float time) {
+    const Vec3 offset = inertial_vector(turn, duration, time);
+    return offset == Vec3(0) ? target : normalize_or_identity(exp_rotation(0.5f * offset) * target);
 }
 
-Vec2 inertial_number(
-    float shown, float shown_earlier, float target, float target_earlier, float interval) {
-    const float offset = shown - target;
-    const float sign = offset < 0.0f ? -1.0f : 1.0f;
-    return {offset, sign * (offset - (shown_earlier - target_earlier)) / interval};
-}
-
-float apply_number(const Vec2& offset, float target, float duration, float time) {
-    const float x = inertial_amplitude(std::abs(offset.x), offset.y, duration, time);
-    return offset.x < 0.0f ? target - x : target + x;
+bool is_negligible(const InertialOffset& offset) {
+    return glm::length(offset.offset) <= kSmallestOffset
+           && glm::length(offset.rate) <= kSmallestRate;
 }
 
 }  // namespace limn

@@ -16,7 +16,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kVelocityInterval = 1.0f / 240.0f;  ///< over which velocities are measured [s]
+constexpr float kVelocityInterval = 1.0f / 1000.0f;  ///< over which velocities are measured [s]
 constexpr int kMaxEnds = 4;                         ///< of clips, in one step
 constexpr float kLastPhase = 1.0f - 1e-6f;          ///< still moving: the pose is not held yet
 constexpr float kTurnTime = 0.25f;                  ///< in which a heading is corrected [s]
@@ -94,19 +94,20 @@ void capture_offsets(
         state.turns[j] = inertial_turn(
             shown.joints.rotations[j], shown_earlier.joints.rotations[j],
             target.joints.rotations[j], target_earlier.joints.rotations[j], kVelocityInterval);
-        const Vec4 shift = inertial_shift(
+        const InertialOffset shift = inertial_shift(
             shown.joints.translations[j], shown_earlier.joints.translations[j],
             target.joints.translations[j], target_earlier.joints.translations[j],
             kVelocityInterval);
-        if (shift != Vec4(0)) {
+        if (!is_negligible(shift)) {
             state.shifted.push_back(j);
             state.shifts.push_back(shift);
         }
     }
     for (std::size_t i = 0; i < shown.weights.size(); ++i) {
-        state.morphs.push_back(inertial_number(
-            shown.weights[i], shown_earlier.weights[i], target.weights[i],
-            target_earlier.weights[i], kVelocityInterval));
+        state.morphs.push_back(inertial_shift(
+            Vec3(shown.weights[i], 0, 0), Vec3(shown_earlier.weights[i], 0, 0),
+            Vec3(target.weights[i], 0, 0), Vec3(target_earlier.weights[i], 0, 0),
+            kVelocityInterval));
     }
 }
 

@@ -178,7 +178,7 @@ void apply_offsets(const MotionGraphState& state, float duration, float time, Mo
         }
     }
     for (std::size_t i = 0; i < std::min(state.morphs.size(), pose.weights.size()); ++i) {
-        pose.weights[i] = apply_number(state.morphs[i], pose.weights[i], duration, time);
+        pose.weights[i] += inertial_vector(state.morphs[i], duration, time).x;
     }
 }
 
