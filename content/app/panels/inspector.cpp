@@ -3,11 +3,13 @@
 #include "content/app/panels/edit_json.h"
 #include "content/app/panels/emitter_controls.h"
 #include "content/app/panels/field_widgets.h"
+#include "content/app/panels/graph_controls.h"
 #include "content/app/panels/hud_style.h"
 #include "content/load/level/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/furrows.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/name.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
@@ -345,6 +347,9 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         if (info.id == component_id<ParticleEmitter>) {
             draw_emitter(world);
         }
+        if (info.id == component_id<MotionGraph>) {
+            draw_graph(world);
+        }
         if (info.id == component_id<Furrows> && ImGui::SmallButton("Edit furrows")) {
             furrows_ = true;
         }
@@ -394,6 +399,32 @@ void Inspector::draw_emitter(World& world) {
     ImGui::TextColored(
         counts.dropped > 0 ? kHudBad : kHudDim, "%s",
         fmt::format("{} dropped", counts.dropped).c_str());
+}
+
+void Inspector::draw_graph(World& world) {
+    const GraphView view = view_graph(world, selected_);
+    for (std::size_t i = 0; i < view.events.size(); ++i) {
+        if (i > 0) {
+            ImGui::SameLine();
+        }
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::SmallButton(view.events[i].c_str())) {
+            send_graph_event(world, selected_, view.events[i]);
+        }
+        ImGui::PopID();
+    }
+    std::string text = fmt::format("{}  phase {:.2f}", view.state, view.phase);
+    if (view.duration > 0) {
+        text += fmt::format("  {:.2f} of {:.2f} s", view.clock, view.duration);
+    }
+    ImGui::TextColored(kHudDim, "%s", text.c_str());
+    for (const auto& list : {view.clips, view.layers}) {
+        for (const auto& [name, weight] : list) {
+            ImGui::ProgressBar(weight, {80, 0}, fmt::format("{:.0f} %", 100 * weight).c_str());
+            ImGui::SameLine();
+            ImGui::TextColored(kHudDim, "%s", name.c_str());
+        }
+    }
 }
 
 void Inspector::edit_copy(

@@ -67,6 +67,8 @@ class Inspector {
     void draw_add_button(World& world);
     /// Buttons and counts above the fields of a selected particle emitter.
     void draw_emitter(World& world);
+    /// Events as buttons, state, weights of clips and layers of a selected motion graph.
+    void draw_graph(World& world);
     void draw_resources(const HudStyle& style, World& world);
     void draw_materials(const HudStyle& style, World& world);
 
