@@ -95,6 +95,19 @@ struct ImageData {
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
 
+/// What a texture lookup averages where an image is drawn smaller than it is (tex.sampling), as
+/// OpenGL's minification filters: texels of level 0, of the mip level with the nearest resolution,
+/// or of the two levels about it.
+enum class Minify : std::uint8_t {
+    Auto,               ///< as well as the device is quick at
+    Nearest,            ///< one texel of level 0
+    Linear,             ///< four texels of level 0
+    NearestMipNearest,  ///< one texel of one level
+    LinearMipNearest,   ///< four texels of one level
+    NearestMipLinear,   ///< one texel of each of two levels
+    LinearMipLinear,    ///< four texels of each of two levels: trilinear
+};
+
 /// Texture reference of a material. uv' = rotate(scale * uv) + offset (KHR_texture_transform).
 struct TextureSlot {
     ImageId image;
@@ -102,9 +115,15 @@ struct TextureSlot {
     Wrap wrap_v = Wrap::Repeat;
     bool nearest = false;
     std::uint8_t uv_set = 0;
+    Minify minify = Minify::Auto;
     Vec2 offset = {0, 0};
     Vec2 scale = {1, 1};
     float rotation = 0.0f;
+    float anisotropy = 0.0f;
+    float lod_bias = 0.0f;
+    Vec2 lod_range = {0, 16};
+
+    bool operator==(const TextureSlot&) const = default;
 };
 
 LIMN_FIELDS(TextureSlot) {
@@ -117,9 +136,24 @@ LIMN_FIELDS(TextureSlot) {
         .values = "repeat mirror clamp");
     LIMN_FIELD(nearest, "no filtering when magnified");
     LIMN_FIELD(uv_set, "texture coordinate set", "", 0, 1);
+    LIMN_FIELD(
+        minify,
+        .doc = "filter when minified, as in OpenGL: of level 0, or of one or two mip levels; auto: "
+               "trilinear where the device is quick at it",
+        .values = "auto nearest linear nearest_mipmap_nearest linear_mipmap_nearest "
+                  "nearest_mipmap_linear linear_mipmap_linear");
     LIMN_FIELD(offset, "offset of the texture coordinates");
     LIMN_FIELD(scale, "scale of the texture coordinates");
     LIMN_FIELD(rotation, "rotation of the texture coordinates, counter-clockwise", "rad");
+    LIMN_FIELD(
+        anisotropy,
+        "samples at most along the longer axis of what a pixel sees; 0: with minify auto as the "
+        "device is quick at it, otherwise 1",
+        "", 0, 16);
+    LIMN_FIELD(
+        lod_bias, "mip levels added to that of the pixel's size: negative sharper", "", -16, 16);
+    LIMN_FIELD(
+        lod_range, "first and last mip level that are read; equal: that level alone", "", 0, 16);
 }
 
 enum class ShadingModel : std::uint8_t {

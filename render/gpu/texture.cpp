@@ -221,6 +221,8 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
             glTextureStorage2DMultisample(
                 id(), desc.samples, desc.format, desc.width, desc.height, GL_TRUE);
         }
+    } else if (target_ == GL_TEXTURE_1D) {
+        glTextureStorage1D(id(), desc_.levels, desc.format, desc.width);
     } else if (has_depth(target_)) {
         glTextureStorage3D(id(), desc_.levels, desc.format, desc.width, desc.height, desc.depth);
     } else {
@@ -289,6 +291,8 @@ void Texture::upload(
     if (has_depth(target_) || is_cube(target_)) {
         glTextureSubImage3D(
             id(), level, 0, 0, std::max(layer, 0), w, h, count, format, type, pixels.data());
+    } else if (target_ == GL_TEXTURE_1D) {
+        glTextureSubImage1D(id(), level, 0, w, format, type, pixels.data());
     } else {
         glTextureSubImage2D(id(), level, 0, 0, w, h, format, type, pixels.data());
     }
@@ -357,6 +361,14 @@ Sampler::Sampler(std::string_view label, const SamplerDesc& desc)
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
         glSamplerParameteri(id(), axis, static_cast<GLint>(desc.wrap));
     }
+    if (desc.wrap_v != GL_NONE) {
+        glSamplerParameteri(id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(desc.wrap_v));
+    }
+    if (desc.lod_bias != 0) {
+        glSamplerParameterf(id(), GL_TEXTURE_LOD_BIAS, desc.lod_bias);
+    }
+    glSamplerParameterf(id(), GL_TEXTURE_MIN_LOD, desc.lod_range.x);
+    glSamplerParameterf(id(), GL_TEXTURE_MAX_LOD, desc.lod_range.y);
     if (desc.anisotropy > 1.0f && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
         float limit = 1.0f;
         glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &limit);

@@ -35,8 +35,8 @@ struct TextureDesc {
     int depth = 1;             ///< slices of a 3D texture, layers of an array; 6 n for cube arrays
     int levels = 1;            ///< mip levels; 0 = full chain down to 1x1
     int samples = 0;           ///< 0 = not multisampled
-    GLenum target =
-        GL_TEXTURE_2D;  ///< 2D, 2D_ARRAY, 3D, CUBE_MAP, CUBE_MAP_ARRAY; multisampled by `samples`
+    GLenum target = GL_TEXTURE_2D;  ///< 1D, 2D, 2D_ARRAY, 3D, CUBE_MAP, CUBE_MAP_ARRAY, RECTANGLE
+                                    ///< (of one level, read in texels); multisampled by `samples`
 
     bool operator==(const TextureDesc&) const = default;
 };
@@ -111,7 +111,10 @@ struct SamplerDesc {
     GLenum minify = GL_LINEAR_MIPMAP_LINEAR;
     GLenum magnify = GL_LINEAR;
     GLenum wrap = GL_REPEAT;
-    float anisotropy = 1.0f;     ///< >= 1, clamped to the device's limit
+    GLenum wrap_v = GL_NONE;  ///< of the second coordinate; GL_NONE: `wrap`
+    float anisotropy = 1.0f;  ///< >= 1, clamped to the device's limit
+    float lod_bias = 0.0f;    ///< mip levels added to that of the derivatives
+    Vec2 lod_range = {-1000, 1000};
     GLenum compare = GL_NONE;    ///< e.g. GL_GEQUAL: a shadow sampler
     Vec4 border = {0, 0, 0, 0};  ///< with GL_CLAMP_TO_BORDER
 

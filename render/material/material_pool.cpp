@@ -10,17 +10,14 @@
 
 #include <algorithm>
 
-// Techniques: engine.material-bind, shade.batching
+// Techniques: engine.material-bind, shade.batching, tex.sampling
 
 namespace limn {
 namespace {
 
 /// Whether one fetch gives occlusion, roughness and metalness, as most exporters pack them.
 bool shares_occlusion(const Material& m) {
-    const TextureSlot& a = m.occlusion_texture;
-    const TextureSlot& b = m.metal_rough_texture;
-    return is_used(a) && a.image == b.image && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v
-           && a.nearest == b.nearest && same_uv(a, b);
+    return is_used(m.occlusion_texture) && m.occlusion_texture == m.metal_rough_texture;
 }
 
 layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks) {
@@ -48,6 +45,21 @@ GLenum wrap_mode(Wrap wrap) {
     return wrap == Wrap::Repeat   ? GL_REPEAT
            : wrap == Wrap::Mirror ? GL_MIRRORED_REPEAT
                                   : GL_CLAMP_TO_EDGE;
+}
+
+GLenum minify_filter(Minify minify, bool trilinear) {
+    constexpr GLenum kFilters[] = {
+        GL_NONE,
+        GL_NEAREST,
+        GL_LINEAR,
+        GL_NEAREST_MIPMAP_NEAREST,
+        GL_LINEAR_MIPMAP_NEAREST,
+        GL_NEAREST_MIPMAP_LINEAR,
+        GL_LINEAR_MIPMAP_LINEAR};
+    if (minify == Minify::Auto) {
+        return trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST;
+    }
+    return kFilters[static_cast<std::size_t>(minify)];
 }
 
 /// An image of several materials is filtered as the most demanding of them says. Plain ones are as
@@ -234,25 +246,24 @@ void MaterialPool::add_material(const Material& material) {
 }
 
 std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {
-    const std::uint32_t key = static_cast<std::uint32_t>(slot.wrap_u)
-                              | static_cast<std::uint32_t>(slot.wrap_v) << 4
-                              | static_cast<std::uint32_t>(slot.nearest) << 8
-                              | static_cast<std::uint32_t>(trilinear) << 9;
-    const auto found = std::find(sampler_keys_.begin(), sampler_keys_.end(), key);
-    if (found == sampler_keys_.end()) {
-        gpu::Sampler sampler(
-            "material", {.minify = static_cast<GLenum>(
-                             trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST),
-                         .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
-                         .wrap = wrap_mode(slot.wrap_u),
-                         .anisotropy = slot.nearest ? 1.0f : anisotropy_});
-        glSamplerParameteri(
-            sampler.id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap_mode(slot.wrap_v)));
-        samplers_.push_back(std::move(sampler));
-        sampler_keys_.push_back(key);
-        return static_cast<std::uint32_t>(samplers_.size() - 1);
+    const float anisotropy = slot.anisotropy > 0                           ? slot.anisotropy
+                             : slot.nearest || slot.minify != Minify::Auto ? 1.0f
+                                                                           : anisotropy_;
+    const gpu::SamplerDesc desc = {
+        .minify = minify_filter(slot.minify, trilinear),
+        .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
+        .wrap = wrap_mode(slot.wrap_u),
+        .wrap_v = wrap_mode(slot.wrap_v),
+        .anisotropy = std::max(anisotropy, 1.0f),
+        .lod_bias = slot.lod_bias,
+        .lod_range = {slot.lod_range.x, std::max(slot.lod_range.x, slot.lod_range.y)}};
+    const auto found = std::find(sampler_descs_.begin(), sampler_descs_.end(), desc);
+    const auto index = static_cast<std::uint32_t>(found - sampler_descs_.begin());
+    if (found == sampler_descs_.end()) {
+        samplers_.emplace_back("material", desc);
+        sampler_descs_.push_back(desc);
     }
-    return static_cast<std::uint32_t>(found - sampler_keys_.begin());
+    return index;
 }
 
 std::uint32_t MaterialPool::index_of(const MapBindings& bindings) {

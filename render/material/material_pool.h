@@ -99,7 +99,7 @@ class MaterialPool {
     float anisotropy_;
     ImagePool images_;
     std::vector<gpu::Sampler> samplers_;
-    std::vector<std::uint32_t> sampler_keys_;
+    std::vector<gpu::SamplerDesc> sampler_descs_;  ///< of samplers_
     std::vector<MapBindings> textures_;
     std::vector<SurfaceBatch> batches_;
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material

@@ -357,7 +357,7 @@ TEST_CASE("gltf: textures keep wrap, filter, uv set and transform; color and dat
         "normalTexture": {"index": 0, "scale": 0.5},
         "occlusionTexture": {"index": 0, "strength": 0.75, "texCoord": 5},
         "emissiveTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}}],
-        "samplers": [{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}],
+        "samplers": [{"magFilter": 9728, "minFilter": 9729, "wrapS": 33071, "wrapT": 33648}],
         "textures": [{"source": 0, "sampler": 0}], "images": [{"name": "wood", "uri": "a.png"}, {"uri": "never-read.png"}])");
     const Result<GltfScene> scene =
         parse_gltf(make_glb(json, square_binary()), "square.glb", folder.path());
@@ -369,6 +369,7 @@ TEST_CASE("gltf: textures keep wrap, filter, uv set and transform; color and dat
     CHECK(color.wrap_u == Wrap::Clamp);
     CHECK(color.wrap_v == Wrap::Mirror);
     CHECK(color.nearest);
+    CHECK(color.minify == Minify::Linear);
     CHECK(color.offset == Vec2(0.5f, -1));
     CHECK(color.scale == Vec2(2, 3));
     CHECK(color.rotation == 0.25f);

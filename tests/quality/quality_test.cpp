@@ -152,7 +152,7 @@ TEST_CASE("quality: wrong usage ends with 2, and the effects are listed in the h
     CHECK(no_file.find("found the file flat.obj") != std::string::npos);
     const ProgramRun help = run_limn(folder, {"quality", "--help"});
     CHECK(help.exit_code == 0);
-    CHECK(quality_effects().size() == 21);
+    CHECK(quality_effects().size() == 22);
     for (const QualityEffect& effect : quality_effects()) {
         CHECK(
             help.out.find(fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle))
@@ -251,6 +251,15 @@ TEST_CASE("quality: the surfaces keep their bounds") {
     CHECK(measured_rows("surfaces", folder).size() == 6);
     CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
     CHECK(read_text(folder.file("q.html")).ends_with("</html>\n"));
+}
+
+TEST_CASE(
+    "quality: texture functions and filters are those of their definitions"
+    * technique("tex.sampling")) {
+    const TemporaryFolder folder;
+    // 24 functions, of which the 15 without a comparison are filtered, too; 10 filters, 3 floors.
+    CHECK(measured_rows("sampling", folder).size() == 24 + 15 + 10 + 3);
+    CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
 }
 
 TEST_CASE("quality: light spreads in skin and shines through it as the profile says") {

@@ -39,6 +39,24 @@ Wrap to_wrap(std::int32_t mode) {
     }
 }
 
+/// Trilinear filters, which nearly all files ask for, are left to what the device is quick at.
+Minify to_minify(std::int32_t filter) {
+    switch (filter) {
+    case TINYGLTF_TEXTURE_FILTER_NEAREST:
+        return Minify::Nearest;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR:
+        return Minify::Linear;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
+        return Minify::NearestMipNearest;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
+        return Minify::LinearMipNearest;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
+        return Minify::NearestMipLinear;
+    default:
+        return Minify::Auto;
+    }
+}
+
 /// The image of a texture in any supported format, WebP first; -1 if there is none.
 int image_of(const tinygltf::Texture& texture) {
     const tinygltf::Value& webp =
@@ -232,6 +250,7 @@ class MaterialBuilder {
             result.wrap_u = to_wrap(sampler.wrapS);
             result.wrap_v = to_wrap(sampler.wrapT);
             result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+            result.minify = to_minify(sampler.minFilter);
         }
         const tinygltf::Value& transform = extension_of(info.extensions, "KHR_texture_transform");
         result.offset = vector_of(transform, "offset", Vec2(0));

@@ -25,6 +25,25 @@ int gltf_wrap(Wrap wrap) {
     return TINYGLTF_TEXTURE_WRAP_REPEAT;
 }
 
+int gltf_minify(Minify minify) {
+    switch (minify) {
+    case Minify::Nearest:
+        return TINYGLTF_TEXTURE_FILTER_NEAREST;
+    case Minify::Linear:
+        return TINYGLTF_TEXTURE_FILTER_LINEAR;
+    case Minify::NearestMipNearest:
+        return TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST;
+    case Minify::LinearMipNearest:
+        return TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST;
+    case Minify::NearestMipLinear:
+        return TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
+    case Minify::Auto:
+    case Minify::LinearMipLinear:
+        break;
+    }
+    return TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+}
+
 }  // namespace
 
 Status append_images(tinygltf::Model& model, const GltfScene& scene) {
@@ -59,8 +78,7 @@ int append_texture(tinygltf::Model& model, const TextureSlot& slot) {
     tinygltf::Sampler sampler;
     sampler.magFilter =
         slot.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
-    sampler.minFilter = slot.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR
-                                     : TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    sampler.minFilter = gltf_minify(slot.minify);
     sampler.wrapS = gltf_wrap(slot.wrap_u);
     sampler.wrapT = gltf_wrap(slot.wrap_v);
     const auto image = static_cast<int>(slot.image.index);
@@ -68,7 +86,8 @@ int append_texture(tinygltf::Model& model, const TextureSlot& slot) {
         const tinygltf::Sampler& other =
             model.samplers[static_cast<std::size_t>(model.textures[i].sampler)];
         if (model.textures[i].source == image && other.magFilter == sampler.magFilter
-            && other.wrapS == sampler.wrapS && other.wrapT == sampler.wrapT) {
+            && other.minFilter == sampler.minFilter && other.wrapS == sampler.wrapS
+            && other.wrapT == sampler.wrapT) {
             return static_cast<int>(i);
         }
     }

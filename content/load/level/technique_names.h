@@ -413,6 +413,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"tex.ink-lines",
      "edge detection, image-space outlines, depth and normal edges, contour lines"},
     {"tex.layer-stack", "multi-layer shader, texture layers, shade tree"},
+    {"tex.sampling", "texture functions, texture filtering, anisotropic filtering, mip mapping"},
     {"tex.toon-outline", "toon outline, inverted hull, silhouette by back faces"},
     {"tex.toon-ramp", "toon shading, cel shading, ramp texture"},
     {"tex.two-part-mapping", "two-part texture mapping, cylindrical mapping, spherical mapping, "
