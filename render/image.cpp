@@ -27,6 +27,7 @@
 #include "render/light/light_pass.h"
 #include "render/light/lobe_tables.h"
 #include "render/light/mirror_caustic_pass.h"
+#include "render/light/normalization_cube.h"
 #include "render/light/shading_comparison_pass.h"
 #include "render/light/shading_marks_pass.h"
 #include "render/light/subsurface_pass.h"
@@ -61,10 +62,11 @@ constexpr EffectEntry kImage[] = {
     effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed
     effect<LightListEffect>(kSceneViews),  // records and clusters
     effect<EnvironmentEffect>(kSceneViews), effect<GbufferEffect>(kSceneViews),
-    effect<HighlightMapEffect>(kMainViews),  // precomputed highlights
-    effect<LobeTableEffect>(kSceneViews),    // precomputed lobes
-    effect<WaterBodiesEffect>(kSceneViews),  // water surfaces, and what is in the water
-    effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
+    effect<HighlightMapEffect>(kMainViews),    // precomputed highlights
+    effect<LobeTableEffect>(kSceneViews),      // precomputed lobes
+    effect<NormalizationEffect>(kSceneViews),  // precomputed unit vectors
+    effect<WaterBodiesEffect>(kSceneViews),    // water surfaces, and what is in the water
+    effect<ShadowEffect>(kSceneViews),         // maps and volumes; after water, which asks for maps
     effect<ParticleShadowEffect>(kSceneViews),  // maps of the light that particles transmit
     effect<CausticsEffect>(kSceneViews),        // after shadows, which occlude their light
 

@@ -122,6 +122,14 @@ enum class LobeSource : std::uint8_t {
     Factors,   ///< a texture for each factor, which are recombined (shade.factorise)
 };
 
+/// What gives unit vectors to lights and halfway to the viewer, and unit normals, at the pixels of
+/// BumpVertex.
+enum class Normalization : std::uint8_t {
+    Computed,    ///< arithmetic
+    CubeBytes,   ///< a lookup in a cube map of bytes (env.normalise-cube)
+    CubeFloats,  ///< a lookup in one of half floats
+};
+
 /// How shaders run through the directional lights.
 enum class LightLoops : std::uint8_t {
     Uniform,   ///< a loop whose count is a uniform
@@ -140,6 +148,7 @@ struct Rendering {
     HardwareDefects hardware = {};
     DetailLimit surface_detail = DetailLimit::Full;
     LobeSource lobes = LobeSource::Computed;
+    Normalization normalization = Normalization::Computed;
     LightLoops light_loops = LightLoops::Uniform;
     Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
@@ -185,6 +194,11 @@ LIMN_FIELDS(Rendering) {
         .doc = "the light that blinn, phong, skin and strand materials reflect: computed, looked "
                "up in a table, or recombined from tables of its factors",
         .values = "computed table factors");
+    LIMN_FIELD(
+        normalization,
+        .doc = "unit vectors at the pixels of bump_vertex: computed, or looked up in a cube map of "
+               "bytes or of half floats",
+        .values = "computed cube_bytes cube_floats");
     LIMN_FIELD(
         light_loops,
         .doc = "the loop over directional lights: with a uniform count, or unrolled for their "

@@ -1,13 +1,14 @@
 // A pixel of a surface whose vertices bump_vertex.vert has prepared: one normal of the map, one product with each
 // light's direction and one with the halfway vector. Surfaces with shading models other than Blinn and Phong have no
 // bumps. Definition SINGLE_LIGHTS: lib/single_lights.glsl.
-// Techniques: bump.vertex-light-space
+// Techniques: bump.vertex-light-space, env.normalise-cube
 #version 450
 #include "lib/lighting.glsl"
 #define LIT_AT_VERTICES
 #include "lib/material.glsl"
 #include "lib/light_at.glsl"
 #include "lib/single_lights.glsl"
+#include "lib/normalization.glsl"
 
 layout(location = 0) INTERPOLATED in vec3 diffuse;
 layout(location = 1) INTERPOLATED in vec3 specular;
@@ -16,10 +17,6 @@ layout(location = 12) INTERPOLATED in vec3 halfway_ts[SINGLE_LIGHTS];
 layout(location = 16) INTERPOLATED in vec3 irradiance[SINGLE_LIGHTS];
 
 layout(location = 0) out vec4 radiance;
-
-vec3 unit(vec3 v) {
-    return v * inversesqrt(max(dot(v, v), 1e-20));
-}
 
 // How much of light at this cosine to the mesh is left: Material::bump_shadow.
 float unshadowed_part(float cosine) {
@@ -39,7 +36,7 @@ void main() {
 #ifdef NORMAL_MAP
     n = MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz * 2.0 - 1.0;
     n.xy *= material_texel(1).w;
-    n = unit(n);
+    n = unit_vector(n);
 #endif
     vec3 albedo = material_texel(0).rgb;
 #ifdef VERTEX_COLOR
@@ -49,8 +46,8 @@ void main() {
     float exponent = blinn_exponent(material_and_flags.y >> 8, abs(shine.a));
     mat2x3 light = mat2x3(diffuse, specular);
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {
-        vec3 l = unit(light_ts[k].xyz);
-        vec4 of_one = lit(dot(n, l), dot(n, unit(halfway_ts[k])), exponent);
+        vec3 l = unit_vector(light_ts[k].xyz);
+        vec4 of_one = lit(dot(n, l), dot(n, unit_vector(halfway_ts[k])), exponent);
         float fade = mix(1.0, 1.0 / max(dot(light_ts[k].xyz, light_ts[k].xyz), 1e-12), light_ts[k].w);
         vec3 arriving = irradiance[k] / kPi * (fade * unshadowed_part(l.z));
         light[0] += arriving * albedo * of_one.y;

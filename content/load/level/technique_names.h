@@ -144,6 +144,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"env.control-map", "reflectivity map, metalness map"},
     {"env.cube-addressing", "cube map addressing"},
     {"env.image-based-light", "image-based lighting, IBL, spherical harmonics, split sum"},
+    {"env.normalise-cube", "normalization cube map"},
     {"env.panorama", "panorama, equirectangular or cylindrical environment map"},
     {"env.reflect", "environment mapping, reflection lookup"},
     {"env.update-policy", "update rate of cube maps"},
