@@ -14,6 +14,7 @@
 #include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
 #include "systems/animation/pose_system.h"
+#include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
 #include "systems/attach_system.h"
@@ -107,6 +108,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_foot_contacts>(Create, Both);
     systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
+    systems.add<add_ragdoll_states>(Create, Both);
+    systems.add<place_ragdolls>(Animate, Both);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);
@@ -149,6 +152,7 @@ void add_particle_systems(SystemList& systems) {
     systems.add<add_trail_states>(Create, Both);
     systems.add<add_beam_states>(Create, Both);
     systems.add<find_particle_obstacles>(Follow);
+    systems.add<update_ragdolls>(Follow);  // likewise; posed in the next step
     systems.add<update_point_masses>(
         Follow);                            // what they hit is known now; they are there next step
     systems.add<update_particles>(Follow);  // after everything that moves emitters
@@ -198,6 +202,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<ParticleObstacles>(world);
     resource_or_default<StepJumps>(world);
     resource_or_default<WalkableMeshes>(world);
+    resource_or_default<RagdollRigs>(world);
     resource_or_default<CrowdLibrary>(world);
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);

@@ -47,6 +47,7 @@
 #include "ecs/components/point_mass.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
+#include "ecs/components/ragdoll.h"
 #include "ecs/components/relief_box.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
@@ -164,6 +165,8 @@ void register_all_components() {
     register_component<Walkable>();
     register_component<FootPlant>();
     register_component<FootContacts>();
+    register_component<Ragdoll>();
+    register_component<RagdollState>();
     register_component<Gaze>();
     register_component<ReachGoal>();
     register_component<ReachState>();

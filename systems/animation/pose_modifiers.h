@@ -3,6 +3,7 @@
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/ik.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/ragdoll.h"
 #include "ecs/param_group.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
@@ -21,6 +22,7 @@ struct PoseModifiers {
     Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>> graphs;
     OptionalRes<const MotionGraphs> graph_data;
     OptionalRes<const MotionPlans> plans;
+    Query<const RagdollState> ragdolls;
 };
 
 template <>
@@ -30,6 +32,7 @@ struct SystemParam<PoseModifiers>
           Query<const IkRig, const IkGoals>, Query<const LookAt, const Gaze>,
           Query<const ReachGoal, const ReachState>,
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
-          OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>> {};
+          OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
+          Query<const RagdollState>> {};
 
 }  // namespace limn

@@ -8,6 +8,7 @@
 #include "systems/animation/graph/graph_pose.h"
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/ragdoll/ragdoll_pose.h"
 
 #include <algorithm>
 #include <map>
@@ -167,15 +168,17 @@ void finish_step(
 class Modifiers {
   public:
     explicit Modifiers(const PoseModifiers& queries)
-        : queries_(queries), any_(
-                                 !queries.plants.empty() || !queries.rigs.empty()
-                                 || !queries.looks.empty() || !queries.reaches.empty()),
+        : queries_(queries),
+          any_(
+              !queries.plants.empty() || !queries.rigs.empty() || !queries.looks.empty()
+              || !queries.reaches.empty() || !queries.ragdolls.empty()),
           any_graph_(!queries.graphs.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return (any_
                 && (queries_.plants.contains(entity) || queries_.rigs.contains(entity)
-                    || queries_.looks.contains(entity) || queries_.reaches.contains(entity)))
+                    || queries_.looks.contains(entity) || queries_.reaches.contains(entity)
+                    || queries_.ragdolls.contains(entity)))
                || (any_graph_ && queries_.graphs.contains(entity));
     }
 
@@ -209,6 +212,9 @@ class Modifiers {
         }
         if (const LookAt* const look = queries_.looks.find<const LookAt>(entity)) {
             apply_look_at(skeleton, *look, *queries_.looks.find<const Gaze>(entity), pose);
+        }
+        if (const RagdollState* const body = queries_.ragdolls.find<const RagdollState>(entity)) {
+            apply_ragdoll(skeleton, *body, pose);
         }
     }
 

@@ -101,6 +101,29 @@ HeightCollider make_field(const HeightField& field, const Vec3& center) {
 
 }  // namespace
 
+std::optional<Collider>
+find_solid_shape(const ParticleCollider& collider, const Affine& world, const HeightField* field) {
+    const Vec3 center = transform_point(world, Vec3(0));
+    const Axes axes = obstacle_axes(world);
+    switch (collider.shape) {
+    case ColliderShape::Plane:
+        return PlaneCollider{axes.unit[1], glm::dot(axes.unit[1], center)};
+    case ColliderShape::Sphere:
+        return SphereCollider{center, collider.size.x * axes.length.x, collider.hollow};
+    case ColliderShape::Box:
+        return make_box(axes, center, collider.size);
+    case ColliderShape::HeightField:
+        if (field != nullptr && field->points >= 2 && is_upright_obstacle(world)) {
+            return make_field(*field, center);
+        }
+        return std::nullopt;
+    case ColliderShape::Mesh:
+    case ColliderShape::Water:  // not solid: update_particles asks the water
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
 void find_particle_obstacles(
     Query<
         const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
@@ -118,35 +141,16 @@ void find_particle_obstacles(
                        const WorldTransform& transform, const MeshInstance* instance,
                        const Deformed* deformed, const DeformerState* deformers,
                        const SurfaceBindingState* binding, const HeightField* field) {
-        const Vec3 center = transform_point(transform.world, Vec3(0));
-        const Axes axes = obstacle_axes(transform.world);
-        switch (collider.shape) {
-        case ColliderShape::Plane:
-            found.emplace_back(PlaneCollider{axes.unit[1], glm::dot(axes.unit[1], center)});
-            break;
-        case ColliderShape::Sphere:
-            found.emplace_back(
-                SphereCollider{center, collider.size.x * axes.length.x, collider.hollow});
-            break;
-        case ColliderShape::Box:
-            found.emplace_back(make_box(axes, center, collider.size));
-            break;
-        case ColliderShape::Mesh:
-            if (instance != nullptr) {
-                const MeshSource source = find_mesh_source(
-                    instance->mesh, deformed, deformers, poses, morphs, *assets, binding);
-                if (source.data != nullptr) {
-                    followed.push_back({entity, &transform.world, source});
-                }
+        if (collider.shape != ColliderShape::Mesh) {
+            if (auto shape = find_solid_shape(collider, transform.world, field)) {
+                found.push_back(*shape);
             }
-            break;
-        case ColliderShape::HeightField:
-            if (field != nullptr && field->points >= 2 && is_upright_obstacle(transform.world)) {
-                found.emplace_back(make_field(*field, center));
+        } else if (instance != nullptr) {
+            const MeshSource source = find_mesh_source(
+                instance->mesh, deformed, deformers, poses, morphs, *assets, binding);
+            if (source.data != nullptr) {
+                followed.push_back({entity, &transform.world, source});
             }
-            break;
-        case ColliderShape::Water:
-            break;  // not solid: update_particles asks the water
         }
     });
     for (const MeshObstacle& one : followed) {

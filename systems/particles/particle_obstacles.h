@@ -12,6 +12,7 @@
 #include "systems/particles/particle_collision.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace limn {
@@ -35,6 +36,11 @@ struct ParticleObstacles {
     std::vector<ObstacleMesh> meshes{};  ///< kept from step to step
     std::uint64_t frame = 0;             ///< counts the steps
 };
+
+/// The shape of a solid collider in the world; none for a mesh, water, or a height field that is
+/// turned or scaled.
+[[nodiscard]] std::optional<Collider>
+find_solid_shape(const ParticleCollider& collider, const Affine& world, const HeightField* field);
 
 /// Finds them all. After everything that moves or deforms them; before update_particles.
 void find_particle_obstacles(

@@ -23,19 +23,6 @@ struct PlacedGround {
     const HeightField* field = nullptr;
 };
 
-const MeshBvh* find_bvh(const Assets& assets, MeshId id, WalkableMeshes& meshes) {
-    const MeshData& mesh = assets.meshes[id.index];
-    const auto found = std::find_if(
-        meshes.entries.begin(), meshes.entries.end(),
-        [id](const WalkableMeshes::Entry& entry) { return entry.mesh == id; });
-    const bool is_new = found == meshes.entries.end();
-    WalkableMeshes::Entry& entry = is_new ? meshes.entries.emplace_back() : *found;
-    if (is_new || entry.version != mesh.version) {
-        entry = {id, mesh.version, build_mesh_bvh(mesh.positions, mesh.indices)};
-    }
-    return &entry.bvh;
-}
-
 /// Where a vertical segment of the world first hits the ground, from above.
 std::optional<GroundHit> find_hit(const PlacedGround& ground, const Segment& world) {
     const Segment local = {
@@ -133,6 +120,19 @@ void update_foot(
 
 }  // namespace
 
+const MeshBvh* find_walkable_mesh(const Assets& assets, MeshId id, WalkableMeshes& meshes) {
+    const MeshData& mesh = assets.meshes[id.index];
+    const auto found = std::find_if(
+        meshes.entries.begin(), meshes.entries.end(),
+        [id](const WalkableMeshes::Entry& entry) { return entry.mesh == id; });
+    const bool is_new = found == meshes.entries.end();
+    WalkableMeshes::Entry& entry = is_new ? meshes.entries.emplace_back() : *found;
+    if (is_new || entry.version != mesh.version) {
+        entry = {id, mesh.version, build_mesh_bvh(mesh.positions, mesh.indices)};
+    }
+    return &entry.bvh;
+}
+
 std::optional<GroundHit> find_height(const HeightField& field, float x, float z) {
     const std::size_t points = field.points;
     if (points < 2 || field.height.size() < points * points || !(field.size.x > 0)
@@ -177,7 +177,7 @@ void update_foot_contacts(
     // All hierarchies first: pointers into the list are taken when it no longer grows.
     grounds.each([&](Entity, const Walkable&, const MeshInstance* instance, const HeightField*) {
         if (instance != nullptr && instance->mesh.index < assets->meshes.size()) {
-            find_bvh(*assets, instance->mesh, *meshes);
+            (void)find_walkable_mesh(*assets, instance->mesh, *meshes);
         }
     });
     grounds.each([&](Entity entity, const Walkable&, const MeshInstance* instance,
@@ -186,7 +186,7 @@ void update_foot_contacts(
         const bool has_mesh =
             field == nullptr && instance != nullptr && instance->mesh.index < assets->meshes.size();
         if (has_mesh) {
-            ground.mesh = find_bvh(*assets, instance->mesh, *meshes);
+            ground.mesh = find_walkable_mesh(*assets, instance->mesh, *meshes);
         }
         if (find_inverse(ground.world, ground.local)) {
             placed.push_back(ground);

@@ -32,6 +32,11 @@ struct WalkableMeshes {
     std::vector<Entry> entries{};
 };
 
+/// The hierarchy of a mesh, which must exist; built when it is new or was changed. Growing the list
+/// invalidates earlier results.
+[[nodiscard]] const MeshBvh*
+find_walkable_mesh(const Assets& assets, MeshId id, WalkableMeshes& meshes);
+
 /// The highest ground on a vertical line, in the ground's space.
 struct GroundHit {
     float height = 0.0f;  ///< along y
