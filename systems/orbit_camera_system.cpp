@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 // Techniques: engine.camera-lag, engine.camera-orbit, engine.look-at
 
@@ -86,13 +89,32 @@ Mat3 look_at_frame(const Vec3& z, const Vec3& up) {
     return {glm::cross(y, backward), y, backward};
 }
 
+Vec3 clear_view(
+    std::span<const PlacedGround> grounds, const Vec3& point, const Vec3& wanted, float clearance) {
+    const Vec3 way = wanted - point;
+    const float distance = glm::length(way);
+    if (!(distance > 0) || !std::isfinite(distance)) {
+        return wanted;
+    }
+    const Vec3 ahead = way / distance;
+    const Mat3 frame = look_at_frame(ahead, {0, 1, 0});
+    const Vec3 beyond = wanted + clearance * ahead;
+    float free = find_free_fraction(grounds, {point, beyond});
+    for (const Vec2 corner : {Vec2(1, 1), Vec2(1, -1), Vec2(-1, 1), Vec2(-1, -1)}) {
+        const Vec3 offset = clearance * (corner.x * frame[0] + corner.y * frame[1]);
+        free = std::min(free, find_free_fraction(grounds, {point, beyond + offset}));
+    }
+    return point + std::clamp(free * (distance + clearance) - clearance, 0.0f, distance) * ahead;
+}
+
 void update_orbit_cameras(
     Query<
         OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
         Without<Parent>>
         cameras,
     Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> teleporting,
-    Res<const Input> input, Res<const FrameTime> time) {
+    Res<const Input> input, Res<const FrameTime> time, GroundQueries grounds) {
+    std::optional<std::vector<PlacedGround>> placed;  // for cameras that need them
     cameras.each([&](Entity entity, OrbitCamera& orbit, Transform& transform, WorldTransform& world,
                      PreviousWorldTransform& previous, const Camera* camera) {
         if (camera != nullptr && camera->active) {
@@ -107,6 +129,7 @@ void update_orbit_cameras(
             target = body->world;
         }
         const Vec3 point = transform_point(target, orbit.offset);
+        target = orbit.turns ? target : Affine{};
         target.row[0].w = point.x;
         target.row[1].w = point.y;
         target.row[2].w = point.z;
@@ -116,6 +139,10 @@ void update_orbit_cameras(
             time->frame == 0 || teleporting.contains(entity) || teleporting.contains(orbit.target);
         transform.position =
             jumps ? wanted : lag_position(transform.position, wanted, orbit.follow, time->step);
+        if (orbit.clearance > 0) {
+            placed = placed ? std::move(placed) : place_grounds(grounds);
+            transform.position = clear_view(*placed, point, transform.position, orbit.clearance);
+        }
         const Vec3 back = transform.position - point;
         if (back != Vec3(0)) {
             transform.rotation = glm::quat_cast(look_at_frame(back, target_axis(target, 1)));

@@ -7,6 +7,9 @@
 #include "ecs/hierarchy.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/characters/grounds.h"
+
+#include <span>
 
 namespace limn {
 
@@ -24,13 +27,18 @@ namespace limn {
 /// Moves every OrbitCamera. In the first frame and after a Teleport of camera or target it moves
 /// rigidly and has no velocity. A null target is the world origin; if the target was destroyed, the
 /// camera stays.
+/// Where a camera that wants to be at `wanted` sees `point` without a mesh between them,
+/// `clearance` before it [m]: rays to the camera and to the corners of a square about it.
+[[nodiscard]] Vec3 clear_view(
+    std::span<const PlacedGround> grounds, const Vec3& point, const Vec3& wanted, float clearance);
+
 void update_orbit_cameras(
     Query<
         OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
         Without<Parent>>
         cameras,
     Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> teleporting,
-    Res<const Input> input, Res<const FrameTime> time);
+    Res<const Input> input, Res<const FrameTime> time, GroundQueries grounds);
 
 /// Direction on the unit sphere about the target: azimuth rotates from `ahead` toward `side`,
 /// elevation raises it toward `above`.

@@ -168,9 +168,10 @@ void run_events(World& world) {
             }
         }
     }
-    if (input != nullptr) {
-        world.resource<Input>().before = keys.actions;
-    }
+}
+
+void keep_input(Res<Input> input) {
+    input->before = input->actions;
 }
 
 void end_lifetimes(World& world) {

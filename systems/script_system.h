@@ -1,11 +1,13 @@
 #pragma once
 
 #include "ecs/components/camera_path.h"
+#include "ecs/components/input.h"
 #include "ecs/components/script.h"
 #include "ecs/components/step_jumps.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
+#include "ecs/resource.h"
 
 namespace limn {
 
@@ -16,6 +18,9 @@ class World;
 /// Executes the events due in this step. Exclusive, first in the frame: all other systems see their
 /// result. Does nothing without EventList or FrameTime.
 void run_events(World& world);
+
+/// At the end of a step: what is pressed now was pressed before the next.
+void keep_input(Res<Input> input);
 
 /// Destroys the entities whose Lifetime is over. Exclusive, after run_events.
 void end_lifetimes(World& world);

@@ -19,6 +19,9 @@
 #include "systems/animation/surface_binding_system.h"
 #include "systems/attach_system.h"
 #include "systems/autofocus_system.h"
+#include "systems/characters/hero_system.h"
+#include "systems/characters/loose_body_system.h"
+#include "systems/characters/motor_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/skin_pull_system.h"
 #include "systems/faces/wrinkle_response_system.h"
@@ -80,6 +83,7 @@ void add_object_systems(SystemList& systems) {
     systems.add<add_world_transforms>(
         Place, AtStart);  // so late: until then nothing has a world transform
     systems.add<update_transforms>(Place, Both);
+    systems.add<keep_input>(View);
     systems.add<update_env_probes>(Follow, Both);  // captures from the current position
 }
 
@@ -118,6 +122,14 @@ void add_animation_systems(SystemList& systems) {
     systems.add<prepare_wrinkles>(Create, Both);
     systems.add<prepare_wrinkle_responses>(Create, Both);
     systems.add<update_wrinkle_responses>(Animate, Both);  // after poses: measures the skin
+}
+
+void add_character_systems(SystemList& systems) {
+    systems.add<add_motor_states>(Create, Both);
+    systems.add<add_loose_states>(Create, Both);
+    systems.add<update_heroes>(Move);
+    systems.add<update_motors>(Move);  // before poses, which put the feet where they are now
+    systems.add<update_loose_bodies>(Move);
 }
 
 void add_water_systems(SystemList& systems) {
@@ -180,7 +192,7 @@ SystemList list_systems(AddSystems more) {
     SystemList systems;
     for (const AddSystems add :
          {add_object_systems, add_animation_systems, add_water_systems, add_particle_systems,
-          add_camera_systems, more}) {
+          add_character_systems, add_camera_systems, more}) {
         if (add != nullptr) {
             add(systems);
         }

@@ -35,6 +35,7 @@
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/motor.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
@@ -140,6 +141,11 @@ void register_all_components() {
     register_component<MotionGraph>();
     register_component<MotionGraphState>();
     register_component<MotionStyle>();
+    register_component<CharacterMotor>();
+    register_component<MotorState>();
+    register_component<Hero>();
+    register_component<LooseBody>();
+    register_component<LooseState>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

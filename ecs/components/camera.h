@@ -32,6 +32,8 @@ struct OrbitCamera {
     float elevation = 0.3f;
     float distance = 5.0f;
     float follow = 0.9f;
+    bool turns = true;
+    float clearance = 0.0f;
 };
 
 LIMN_FIELDS(OrbitCamera) {
@@ -41,6 +43,13 @@ LIMN_FIELDS(OrbitCamera) {
     LIMN_FIELD(elevation, "orbit angle above the horizon", "rad", -1.55, 1.55);
     LIMN_FIELD(distance, "distance to the look-at point", "m", 0.01, 10000);
     LIMN_FIELD(follow, "fraction of the remaining distance covered in 1/60 s; 1 = rigid", "", 0, 1);
+    LIMN_FIELD(
+        turns, "azimuth and elevation refer to the axes of the target; or else of the world");
+    LIMN_FIELD(
+        clearance,
+        "comes closer where Walkable meshes would hide the target, and stays this far "
+        "before them; 0: passes through",
+        "m", 0, 10);
 }
 
 /// Free-flying first-person camera, controlled by Input.

@@ -1,6 +1,7 @@
 #include "ecs/components/input.h"
 
 #include "ecs/components/camera_lens.h"
+#include "ecs/components/motor.h"
 #include "ecs/components/skin_pull.h"
 #include "ecs/components/weather.h"
 #include "ecs/world.h"
@@ -97,6 +98,25 @@ void register_engine_actions() {
           {"shutter_shorter", "shutter: shorter, longer", {"9"}},
           {"shutter_longer", "shutter: shorter, longer", {"0"}}},
          [](const World& world, Entity) { return !world.query<const Lens>().empty(); }});
+    register_actions(
+        {"Hero",
+         {{"hero_forward", "forward, back", {"W", "Up"}},
+          {"hero_back", "forward, back", {"S", "Down"}},
+          {"hero_left", "left, right; drag to look", {"A", "Left"}},
+          {"hero_right", "left, right; drag to look", {"D", "Right"}},
+          {"hero_run", "runs", {"Shift"}},
+          {"hero_jump", "jumps; swims up", {"E", "Enter"}},
+          {"hero_dive", "dives", {"Q"}},
+          {"hero_carry", "picks up, throws", {"G"}}},
+         [](const World& world, Entity camera) {
+             bool found = false;
+             world.query<const Hero>().each([&](const Hero& hero) {
+                 found = found || hero.camera.is_null() || hero.camera == camera;
+             });
+             return found;
+         },
+         true,
+         true});
     register_actions(
         {"Skin",
          {{"pull_skin", "pull the skin under the pointer, as dragging it does", {"P"}}},

@@ -30,7 +30,7 @@ LIMN_FIELDS(ActionValue) {
 /// or a replay.
 struct Input {
     std::vector<ActionValue> actions{};  ///< those not listed are 0
-    std::vector<ActionValue> before{};   ///< in the previous step; kept by run_events
+    std::vector<ActionValue> before{};   ///< in the previous step; kept by keep_input
     Vec2 look = {0, 0};                  ///< mouse motion [pixels]: x right, y down
     float zoom = 0.0f;
     bool click = false;  ///< click at the pointer; reset to false by the system that handles it

@@ -68,6 +68,40 @@ void refit_mesh_bvh(
 /// for segments that are not finite or shorter than 1e-30.
 [[nodiscard]] MeshHit first_hit(const MeshBvh& bvh, const Segment& segment);
 
+/// Calls visit(leaf, lane) for every triangle of the leaves whose boxes overlap `bounds`, in the
+/// order of the tree; some of them do not overlap themselves.
+template <typename Visit>
+void visit_triangles(const MeshBvh& bvh, const Bounds& bounds, Visit visit) {
+    std::vector<std::uint32_t> open;
+    if (!bvh.nodes.empty()) {
+        open.push_back(0);
+    }
+    while (!open.empty()) {
+        const std::uint32_t next = open.back();
+        open.pop_back();
+        if ((next & MeshBvh::kLeafBit) != 0) {
+            const MeshBvh::Leaf& leaf = bvh.leaves[next & ~MeshBvh::kLeafBit];
+            for (std::size_t lane = 0; lane < MeshBvh::kTriangles; ++lane) {
+                if (leaf.triangle[lane] != kNoTriangle) {
+                    visit(leaf, lane);
+                }
+            }
+            continue;
+        }
+        const MeshBvh::Node& node = bvh.nodes[next];
+        for (std::size_t i = 0; i < MeshBvh::kChildren; ++i) {
+            bool overlaps = node.child[i] != MeshBvh::kNoChild;
+            for (int axis = 0; axis < 3; ++axis) {
+                overlaps = overlaps && node.bounds[0][axis][i] <= bounds.max[axis]
+                           && node.bounds[1][axis][i] >= bounds.min[axis];
+            }
+            if (overlaps) {
+                open.push_back(node.child[i]);
+            }
+        }
+    }
+}
+
 /// Scratch memory of first_hits: keep it from frame to frame.
 struct SegmentBatch {
     std::vector<std::uint32_t> keys{};

@@ -50,7 +50,8 @@ GamepadInput read_gamepad(const GLFWgamepadstate& state) {
             {state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X], state.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]}),
         .rise = triggers.x,
         .fast = state.buttons[GLFW_GAMEPAD_BUTTON_B] == GLFW_PRESS,
-        .click = state.buttons[GLFW_GAMEPAD_BUTTON_A] == GLFW_PRESS};
+        .click = state.buttons[GLFW_GAMEPAD_BUTTON_A] == GLFW_PRESS,
+        .carry = state.buttons[GLFW_GAMEPAD_BUTTON_X] == GLFW_PRESS};
 }
 
 GamepadInput poll_gamepad() {
@@ -71,6 +72,8 @@ void add_gamepad(const GamepadInput& gamepad, float dt, Input& input) {
     set_actions_of(input, "E", gamepad.rise);
     set_actions_of(input, "Q", -gamepad.rise);
     set_actions_of(input, "Shift", gamepad.fast ? 1.0f : 0.0f);
+    set_actions_of(input, "Enter", gamepad.click ? 1.0f : 0.0f);
+    set_actions_of(input, "G", gamepad.carry ? 1.0f : 0.0f);
     // Squared: small turns near the center stay precise.
     input.look += kLookSpeed * dt * glm::length(gamepad.look) * gamepad.look;
 }

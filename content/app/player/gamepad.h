@@ -8,7 +8,8 @@ struct GLFWgamepadstate;
 namespace limn {
 
 // A gamepad with the layout of an Xbox controller (GLFW's mapping): the left stick moves or drives,
-// the right one looks around, the triggers go down and up, A clicks at the pointer, B is faster.
+// the right one looks around, the triggers go down and up, A clicks at the pointer and jumps, B is
+// faster, X picks up and throws.
 
 /// The state of a gamepad in terms of the camera's and drivers' actions.
 struct GamepadInput {
@@ -16,7 +17,8 @@ struct GamepadInput {
     Vec2 look = {0, 0};  ///< right, down; -1 .. 1
     float rise = 0.0f;   ///< up; -1 .. 1
     bool fast = false;
-    bool click = false;  ///< A is down
+    bool click = false;  ///< A is down; jumps, too
+    bool carry = false;  ///< X is down
 };
 
 /// A stick's position without its dead zone: 0 within 0.15 of the center, rising to 1 at the

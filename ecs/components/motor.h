@@ -1,0 +1,117 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+
+namespace limn {
+
+/// Moves its entity, which must not have a parent, as its MoveIntent says: an upright capsule that
+/// walks on everything Walkable, climbs steps, slides along walls, falls, wades and swims. Its
+/// origin is between its feet, and it faces +z.
+struct CharacterMotor {
+    float radius = 0.28f;
+    float height = 1.75f;
+    float step = 0.35f;
+    float slope = radians(48.0f);
+    float acceleration = 14.0f;
+    float air_acceleration = 3.0f;
+    float jump = 0.9f;
+    float turn = 9.0f;
+    float swim_speed = 1.1f;
+    float push = 80.0f;
+};
+
+LIMN_FIELDS(CharacterMotor) {
+    LIMN_FIELD(radius, "of the capsule", "m", 0.01, 100);
+    LIMN_FIELD(height, "from the soles to the crown", "m", 0.02, 200);
+    LIMN_FIELD(step, "highest step that it climbs", "m", 0, 100);
+    LIMN_FIELD(slope, "steepest ground that it stands on", "rad", 0, 1.57);
+    LIMN_FIELD(acceleration, "on the ground", "m/s^2", 0, 1000);
+    LIMN_FIELD(air_acceleration, "in the air and in water", "m/s^2", 0, 1000);
+    LIMN_FIELD(jump, "height of a jump", "m", 0, 100);
+    LIMN_FIELD(turn, "largest speed of turning", "rad/s", 0, 100);
+    LIMN_FIELD(swim_speed, "largest speed in water", "m/s", 0, 100);
+    LIMN_FIELD(push, "mass with which it pushes loose bodies", "kg", 0, 1e6);
+}
+
+enum class MotorMode : std::uint32_t {
+    Stand,  ///< on the ground, walking or not
+    Fall,
+    Swim,
+};
+
+/// State of a CharacterMotor.
+struct MotorState {
+    Vec3 velocity = Vec3(0);
+    Vec3 normal = Vec3(0, 1, 0);
+    Entity ground{};
+    Vec3 point = Vec3(0);
+    Vec3 ahead = Vec3(0, 0, 1);
+    float depth = -1.0f;
+    float air_time = 0.0f;
+    MotorMode mode = MotorMode::Fall;
+};
+
+LIMN_FIELDS(MotorState) {
+    LIMN_FIELD(velocity, "in the world, without that of the ground", "m/s");
+    LIMN_FIELD(normal, "of the ground");
+    LIMN_FIELD(ground, "entity that it stands on");
+    LIMN_FIELD(point, "where, in the space of that entity", "m");
+    LIMN_FIELD(ahead, "+z of the character in that space");
+    LIMN_FIELD(depth, "of the water above the soles; < 0: none", "m");
+    LIMN_FIELD(air_time, "since it last stood", "s");
+    LIMN_FIELD(mode, .doc = "what it does", .values = "stand fall swim");
+}
+
+/// With a CharacterMotor: the player moves it, relative to the camera.
+struct Hero {
+    float walk = 1.4f;
+    float run = 4.2f;
+    float reach = 1.1f;
+    float throw_speed = 7.0f;
+    Entity camera{};
+    Entity carried{};
+};
+
+LIMN_FIELDS(Hero) {
+    LIMN_FIELD(walk, "speed of walking", "m/s", 0, 100);
+    LIMN_FIELD(run, "speed of running", "m/s", 0, 100);
+    LIMN_FIELD(reach, "distance at which it picks up a loose body", "m", 0, 100);
+    LIMN_FIELD(throw_speed, "of what it throws", "m/s", 0, 100);
+    LIMN_FIELD(camera, "camera that its directions refer to, by name; none: the world");
+    LIMN_FIELD(carried, "loose body that it carries");
+}
+
+/// A ball or a crate, handled as a ball: falls, rolls on what is Walkable, is pushed by characters
+/// and carried and thrown by a Hero. Must not have a parent; its origin is its center.
+struct LooseBody {
+    float radius = 0.2f;
+    float mass = 2.0f;
+    float bounce = 0.4f;
+    float friction = 0.6f;
+    bool rolls = true;
+};
+
+LIMN_FIELDS(LooseBody) {
+    LIMN_FIELD(radius, "of the ball", "m", 0.001, 100);
+    LIMN_FIELD(mass, "", "kg", 0.001, 1e6);
+    LIMN_FIELD(bounce, "fraction of the normal speed that a hit keeps", "", 0, 1);
+    LIMN_FIELD(friction, "deceleration on the ground, in proportion to gravity", "", 0, 10);
+    LIMN_FIELD(rolls, "turns as it rolls; a crate does not");
+}
+
+/// State of a LooseBody.
+struct LooseState {
+    Vec3 velocity = Vec3(0);
+    Entity carrier{};
+};
+
+LIMN_FIELDS(LooseState) {
+    LIMN_FIELD(velocity, "in the world", "m/s");
+    LIMN_FIELD(carrier, "hero who carries it");
+}
+
+}  // namespace limn

@@ -1,0 +1,328 @@
+#include "systems/characters/motor_system.h"
+
+#include "ecs/base/rotation.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr float kMotorGravity = 9.81f;
+constexpr float kMotorTopSpeed = 50.0f;  // of a fall [m/s]
+constexpr float kCoyote = 0.12f;         // how long after leaving an edge it may still jump [s]
+constexpr float kSnapShare = 0.9f;       // of a step: how far down it follows the ground
+constexpr float kClimbRate = 14.0f;      // at which it follows steps [1/s]
+constexpr float kWadeFrom = 0.15f;       // depths relative to the height: slows from here,
+constexpr float kSwimFrom = 0.72f;       // swims from here,
+constexpr float kStandFrom = 0.66f;      // and stands again from here
+constexpr float kFloatDepth = 0.84f;     // of the soles while swimming
+constexpr float kBuoyancy = 3.0f;        // rate at which it rises to that depth [1/s]
+constexpr float kContactSkin = 1e-4f;    // depth of contacts that is left [m]
+constexpr int kMaxParts = 64;            // of a step
+constexpr int kMaxContacts = 6;          // in a part
+
+Vec3 level_part(const Vec3& v) {
+    return {v.x, 0, v.z};
+}
+
+Vec3 shortened_to(const Vec3& v, float length) {
+    const float size = glm::length(v);
+    return size > length ? v * (length / size) : v;
+}
+
+/// What stops a motor where it stands, at `feet`.
+class Surroundings {
+  public:
+    Surroundings(const CharacterMotor& motor, std::span<const PlacedGround> grounds)
+        : motor_(motor), grounds_(grounds),
+          step_(std::clamp(motor.step, 0.0f, 0.5f * motor.height)),
+          radius_(std::clamp(motor.radius, 0.01f, 0.5f * (motor.height - step_))),
+          walkable_(std::cos(motor.slope)) {}
+
+    [[nodiscard]] float step() const { return step_; }
+    [[nodiscard]] float radius() const { return radius_; }
+    [[nodiscard]] bool is_walkable(const Vec3& normal) const { return normal.y >= walkable_; }
+
+    /// The part of the capsule above a step.
+    [[nodiscard]] Capsule capsule(const Vec3& feet) const {
+        return {
+            feet + Vec3(0, step_ + radius_, 0), feet + Vec3(0, motor_.height - radius_, 0),
+            radius_};
+    }
+
+    /// Below the feet, at most `down` [m]: below the middle, or else where most of the rim is.
+    [[nodiscard]] Landing land(const Vec3& feet, float down) const {
+        Landing best = land_at(feet, down);
+        const float rim = 0.7f * radius_;
+        for (const Vec3& offset :
+             {Vec3(rim, 0, 0), Vec3(-rim, 0, 0), Vec3(0, 0, rim), Vec3(0, 0, -rim)}) {
+            const Landing at = land_at(feet + offset, down);
+            const bool stands = at.ground != nullptr && is_walkable(at.normal);
+            const bool is_better = best.ground == nullptr || !is_walkable(best.normal)
+                                   || at.point.y > best.point.y + 1e-4f;
+            if (stands && is_better && !is_same_slope(best, at)) {
+                best = at;
+                best.point.x = feet.x;
+                best.point.z = feet.z;
+            }
+        }
+        return best;
+    }
+
+    [[nodiscard]] std::optional<GroundContact> touch(const Vec3& feet) const {
+        return find_deepest_contact(grounds_, capsule(feet));
+    }
+
+  private:
+    [[nodiscard]] Landing land_at(const Vec3& feet, float down) const {
+        return find_landing(
+            grounds_, {feet + Vec3(0, step_ + 0.05f * radius_, 0), feet - Vec3(0, down, 0)});
+    }
+    /// Whether the rim only touches the slope on which the middle stands.
+    [[nodiscard]] static bool is_same_slope(const Landing& middle, const Landing& rim) {
+        return middle.ground != nullptr
+               && std::abs(glm::dot(rim.point - middle.point, middle.normal)) < 0.01f;
+    }
+
+    const CharacterMotor& motor_;
+    std::span<const PlacedGround> grounds_;
+    float step_;
+    float radius_;
+    float walkable_;
+};
+
+/// Carries the character with the ground on which it stands.
+void ride(std::span<const PlacedGround> grounds, MotorBody& body) {
+    const PlacedGround* const ground =
+        body.state.mode == MotorMode::Stand ? find_placed(grounds, body.state.ground) : nullptr;
+    if (ground == nullptr) {
+        return;
+    }
+    const Vec3 carried = transform_point(ground->world, body.state.point);
+    const Vec3 ahead = level_part(transform_vector(ground->world, body.state.ahead));
+    if (is_finite(carried) && is_finite(ahead)) {
+        body.transform.position = carried;
+        const Vec3 now = level_part(body.transform.rotation * Vec3(0, 0, 1));
+        const float turn = std::atan2(ahead.x, ahead.z) - std::atan2(now.x, now.z);
+        if (std::abs(std::remainder(turn, 2 * kPi)) > 1e-5f && ahead != Vec3(0)) {
+            body.transform.rotation =
+                normalize_or_identity(rotation_about({0, 1, 0}, turn) * body.transform.rotation);
+        }
+    }
+}
+
+void remember_ground(const Landing& landing, MotorBody& body) {
+    body.state.ground = landing.ground->entity;
+    body.state.point = transform_point(landing.ground->local, body.transform.position);
+    body.state.ahead =
+        transform_vector(landing.ground->local, body.transform.rotation * Vec3(0, 0, 1));
+    body.state.normal = landing.normal;
+}
+
+/// Stands upright, and turns toward where it wants to face.
+void turn_body(const CharacterMotor& motor, const MoveIntent& intent, float dt, Quat& rotation) {
+    const Vec3 now = level_part(rotation * Vec3(0, 0, 1));
+    const float yaw = now != Vec3(0) ? std::atan2(now.x, now.z) : 0.0f;
+    const Vec3 facing = level_part(is_finite(intent.facing) ? intent.facing : Vec3(0));
+    const Vec3 moving = level_part(is_finite(intent.velocity) ? intent.velocity : Vec3(0));
+    const bool faces = glm::length(facing) > 1e-3f;
+    const Vec3 wanted = faces ? facing : moving;
+    float turn = 0;
+    if (faces || glm::length(moving) > 0.05f) {
+        const float limit = motor.turn * dt;
+        turn = std::clamp(
+            std::remainder(std::atan2(wanted.x, wanted.z) - yaw, 2 * kPi), -limit, limit);
+    }
+    rotation = rotation_about({0, 1, 0}, yaw + turn);
+}
+
+/// The water about the feet.
+struct Wetness {
+    float depth = -1;
+    Vec3 velocity = Vec3(0);
+};
+
+Wetness find_wetness(std::span<const WaterSurface> waters, const Vec3& feet) {
+    const auto around = find_water(waters, feet + Vec3(0, 0.02f, 0));
+    return around ? Wetness{around->depth + 0.02f, around->surface.velocity} : Wetness{};
+}
+
+void choose_mode(const CharacterMotor& motor, MotorState& state) {
+    const float swim = state.mode == MotorMode::Swim ? kStandFrom : kSwimFrom;
+    if (state.depth > swim * motor.height) {
+        state.mode = MotorMode::Swim;
+    } else if (state.mode == MotorMode::Swim) {
+        state.mode = MotorMode::Fall;
+    }
+}
+
+void accelerate(
+    const CharacterMotor& motor, const MoveIntent& intent, const Wetness& water, float dt,
+    MotorBody& body) {
+    MotorState& state = body.state;
+    const Vec3 intended = is_finite(intent.velocity) ? intent.velocity : Vec3(0);
+    Vec3 wanted = level_part(shortened_to(intended, kMotorTopSpeed));
+    if (state.mode == MotorMode::Swim) {
+        wanted = shortened_to(wanted, motor.swim_speed) + level_part(water.velocity);
+        const float rise = kBuoyancy * (state.depth - kFloatDepth * motor.height);
+        const float vertical = std::abs(intended.y) > 0.05f
+                                   ? std::clamp(intended.y, -motor.swim_speed, motor.swim_speed)
+                                   : std::clamp(rise, -motor.swim_speed, motor.swim_speed);
+        wanted.y = std::min(vertical, std::max(rise, 0.0f)) + water.velocity.y;
+        state.velocity += shortened_to(wanted - state.velocity, 2 * motor.air_acceleration * dt);
+        return;
+    }
+    const float wade =
+        std::clamp((state.depth / motor.height - kWadeFrom) / (kSwimFrom - kWadeFrom), 0.0f, 1.0f);
+    wanted *= 1 - 0.65f * wade;
+    const bool stands = state.mode == MotorMode::Stand;
+    const float rate = stands ? motor.acceleration : motor.air_acceleration;
+    if (stands || wanted != Vec3(0)) {
+        state.velocity += shortened_to(wanted - level_part(state.velocity), rate * dt);
+    }
+    if (intent.jump && (stands || state.air_time < kCoyote) && motor.jump > 0) {
+        // Speeds change before positions, which half a step of gravity makes up for.
+        state.velocity.y = std::sqrt(2 * kMotorGravity * motor.jump) - 0.5f * kMotorGravity * dt;
+        state.mode = MotorMode::Fall;
+        state.air_time = kCoyote;
+        body.jumped = true;
+    } else if (stands) {
+        state.velocity.y = 0;
+    } else {
+        state.velocity.y -= kMotorGravity * dt;
+    }
+    state.velocity = shortened_to(state.velocity, kMotorTopSpeed);
+}
+
+/// Pushes it out of walls and ceilings, and takes away the speed into them.
+void leave_solids(const Surroundings& around, MotorBody& body) {
+    for (int i = 0; i < kMaxContacts; ++i) {
+        const std::optional<GroundContact> touch = around.touch(body.transform.position);
+        if (!touch || touch->contact.depth < kContactSkin) {
+            return;
+        }
+        Vec3 normal = touch->contact.normal;
+        float depth = touch->contact.depth;
+        // One that stands is pushed aside by walls, and not up or down.
+        const float side = glm::length(level_part(normal));
+        if (body.state.mode == MotorMode::Stand && side > 0.2f) {
+            normal = level_part(normal) / side;
+            depth /= side;
+        }
+        body.transform.position += std::min(depth, around.radius()) * normal;
+        body.state.velocity -= std::min(glm::dot(body.state.velocity, normal), 0.0f) * normal;
+    }
+}
+
+/// Puts it on the ground below, if it is to stand on it. `dt`: of this part of the step.
+void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
+    MotorState& state = body.state;
+    Vec3& feet = body.transform.position;
+    const bool stood = state.mode == MotorMode::Stand;
+    const Landing landing = around.land(feet, stood ? kSnapShare * around.step() + 0.02f : 0.0f);
+    const bool rises = state.velocity.y > 1e-3f && !stood;
+    if (landing.ground == nullptr || rises) {
+        state.mode = stood ? MotorMode::Fall : state.mode;
+        return;
+    }
+    if (!around.is_walkable(landing.normal)) {  // too steep: slides
+        state.mode = MotorMode::Fall;
+        const float below = landing.point.y - feet.y;
+        if (below > 0) {
+            feet += below * landing.normal.y * landing.normal;
+            state.velocity -=
+                std::min(glm::dot(state.velocity, landing.normal), 0.0f) * landing.normal;
+        }
+        return;
+    }
+    if (state.mode == MotorMode::Swim) {
+        if (feet.y < landing.point.y) {
+            feet.y = landing.point.y;
+            state.velocity.y = std::max(state.velocity.y, 0.0f);
+        }
+        return;
+    }
+    const float gap = landing.point.y - feet.y;
+    const bool falls_deeper = !stood && gap < 0;
+    if (falls_deeper) {
+        return;
+    }
+    // Steps are eased; slopes and landings are followed at once.
+    const bool is_step = stood && std::abs(gap) > 0.02f;
+    const float ease = is_step ? 1 - std::exp(-kClimbRate * dt) : 1.0f;
+    const float slope_gap = glm::length(level_part(state.velocity)) * dt
+                            * std::sqrt(std::max(1 - square(landing.normal.y), 0.0f))
+                            / std::max(landing.normal.y, 0.1f);
+    feet.y += std::abs(gap) <= slope_gap * 1.5f ? gap : ease * gap;
+    state.velocity.y = 0;
+    state.mode = MotorMode::Stand;
+    state.air_time = 0;
+    remember_ground(landing, body);
+}
+
+bool is_valid(const CharacterMotor& motor, const MotorBody& body) {
+    const float sum = motor.radius + motor.height + motor.step + motor.slope + motor.acceleration
+                      + motor.air_acceleration + motor.jump + motor.turn + motor.swim_speed;
+    return std::isfinite(sum) && motor.height > 0 && is_finite(body.transform.position)
+           && is_finite(body.state.velocity);
+}
+
+}  // namespace
+
+MotorBody step_motor(
+    const CharacterMotor& motor, const MoveIntent& intent, const MotorBody& body,
+    std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt) {
+    if (!is_valid(motor, body) || !(dt >= 0)) {
+        return body;
+    }
+    MotorBody next = body;
+    next.jumped = false;
+    const Surroundings around(motor, grounds);
+    ride(grounds, next);
+    const Wetness water = find_wetness(waters, next.transform.position);
+    next.state.depth = water.depth;
+    next.state.air_time += dt;
+    choose_mode(motor, next.state);
+    turn_body(motor, intent, dt, next.transform.rotation);
+    accelerate(motor, intent, water, dt, next);
+    const float way = glm::length(next.state.velocity) * dt;
+    const int parts =
+        std::clamp(static_cast<int>(std::ceil(2 * way / around.radius())), 1, kMaxParts);
+    const float part = dt / static_cast<float>(parts);
+    for (int i = 0; i < parts; ++i) {
+        next.transform.position += part * next.state.velocity;
+        leave_solids(around, next);
+        meet_ground(around, part, next);
+    }
+    return next;
+}
+
+void add_motor_states(
+    Query<const CharacterMotor, Without<MotorState>> bare,
+    Query<const CharacterMotor, Without<MoveIntent>> aimless, Commands commands) {
+    bare.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MotorState{}); });
+    aimless.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MoveIntent{}); });
+}
+
+void update_motors(
+    Query<const CharacterMotor, MoveIntent, MotorState, Transform, Without<Parent>> motors,
+    GroundQueries grounds, WaterQuery waters, Res<const FrameTime> time) {
+    if (motors.empty()) {
+        return;
+    }
+    const std::vector<PlacedGround> placed = place_grounds(grounds);
+    const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
+    motors.each([&](const CharacterMotor& motor, MoveIntent& intent, MotorState& state,
+                    Transform& transform) {
+        const MotorBody body =
+            step_motor(motor, intent, {transform, state, false}, placed, surfaces, time->step);
+        transform = body.transform;
+        state = body.state;
+        intent.jump = intent.jump && !body.jumped;
+    });
+}
+
+}  // namespace limn
