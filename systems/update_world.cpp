@@ -22,6 +22,8 @@
 #include "systems/characters/hero_system.h"
 #include "systems/characters/loose_body_system.h"
 #include "systems/characters/motor_system.h"
+#include "systems/crowd/crowd_system.h"
+#include "systems/crowd/flock_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/skin_pull_system.h"
 #include "systems/faces/wrinkle_response_system.h"
@@ -132,6 +134,12 @@ void add_character_systems(SystemList& systems) {
     systems.add<update_loose_bodies>(Move);
 }
 
+void add_crowd_systems(SystemList& systems) {
+    systems.add<add_crowd_states>(Create, Both);
+    systems.add<update_crowd>(Move);  // before clips, whose speeds it sets
+    systems.add<update_flocks>(Move);
+}
+
 void add_water_systems(SystemList& systems) {
     systems.add<add_ripple_states>(Create, Both);
     systems.add<add_touch_parts>(Create, Both);
@@ -191,8 +199,8 @@ namespace {
 SystemList list_systems(AddSystems more) {
     SystemList systems;
     for (const AddSystems add :
-         {add_object_systems, add_animation_systems, add_water_systems, add_particle_systems,
-          add_character_systems, add_camera_systems, more}) {
+         {add_object_systems, add_animation_systems, add_crowd_systems, add_character_systems,
+          add_water_systems, add_particle_systems, add_camera_systems, more}) {
         if (add != nullptr) {
             add(systems);
         }
@@ -219,6 +227,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);
 
+    resource_or_default<CrowdMemory>(world);
     return resource_or_default<FrameTime>(world);
 }
 

@@ -57,6 +57,8 @@ using AddSystems = void (*)(SystemList&);
 
 void add_object_systems(SystemList& systems);
 void add_animation_systems(SystemList& systems);
+void add_crowd_systems(SystemList& systems);
+void add_character_systems(SystemList& systems);
 void add_water_systems(SystemList& systems);
 void add_particle_systems(SystemList& systems);
 void add_camera_systems(SystemList& systems);

@@ -9,12 +9,14 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/crowd.h"
 #include "ecs/components/crowd_pose.h"
 #include "ecs/components/curvature_view.h"
 #include "ecs/components/dazzle.h"
 #include "ecs/components/deformers.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/flock.h"
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/force_field.h"
 #include "ecs/components/framing.h"
@@ -146,6 +148,14 @@ void register_all_components() {
     register_component<Hero>();
     register_component<LooseBody>();
     register_component<LooseState>();
+    register_component<CrowdAgent>();
+    register_component<CrowdGoal>();
+    register_component<CrowdExit>();
+    register_component<CrowdObstacle>();
+    register_component<CrowdSpace>();
+    register_component<CrowdState>();
+    register_component<FlockParams>();
+    register_component<Boid>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Points sorted into square cells of the plane, for neighbor searches: a counting sort, then by
+// key within a cell, so that the order depends on the set of points alone. Cells of an unbounded
+// plane share a table of about one cell a point, which repeats in x and y (a spatial hash whose
+// neighbor cells are neighbors in memory): a run may hold points that are far away.
+
+/// A range of slots.
+struct SlotRun {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+};
+
+struct AgentGrid {
+    float cell = 1;             ///< side of a cell [m]
+    std::uint32_t columns = 1;  ///< of the table, and its rows: a power of two
+    std::vector<std::uint32_t>
+        begins{};  ///< slot of the first point of each cell, then their number
+    std::vector<std::uint32_t> order{};  ///< index of the point in each slot
+};
+
+/// Sorts finite points; `keys` differ. Coordinates beyond 1e6 cells count as if they were there.
+void build_agent_grid(
+    std::span<const Vec2> points, std::span<const std::uint64_t> keys, float cell, AgentGrid& grid);
+
+[[nodiscard]] inline std::int32_t grid_coordinate(float x, float cell) {
+    return static_cast<std::int32_t>(std::floor(std::clamp(x / cell, -1e6f, 1e6f)));
+}
+
+/// Calls visit(SlotRun) for the cells that a square of `reach` [m] to each side of a point touches;
+/// no slot twice.
+template <typename Visit>
+void each_run(const AgentGrid& grid, const Vec2& point, float reach, const Visit& visit) {
+    const std::uint32_t mask = grid.columns - 1;
+    const auto range = [&](float x, std::uint32_t& first, std::uint32_t& count) {
+        const std::int32_t low = grid_coordinate(x - reach, grid.cell);
+        const std::int32_t high = grid_coordinate(x + reach, grid.cell);
+        first = static_cast<std::uint32_t>(low) & mask;
+        count = std::min(static_cast<std::uint32_t>(high - low) + 1, grid.columns);
+    };
+    std::uint32_t column = 0;
+    std::uint32_t columns = 0;
+    std::uint32_t row = 0;
+    std::uint32_t rows = 0;
+    range(point.x, column, columns);
+    range(point.y, row, rows);
+    const std::uint32_t straight = std::min(columns, grid.columns - column);
+    for (std::uint32_t i = 0; i < rows; ++i) {
+        const std::uint32_t* const begins =
+            grid.begins.data() + std::size_t{(row + i) & mask} * grid.columns;
+        visit(SlotRun{begins[column], begins[column + straight]});
+        if (straight < columns) {
+            visit(SlotRun{begins[0], begins[columns - straight]});
+        }
+    }
+}
+
+}  // namespace limn
