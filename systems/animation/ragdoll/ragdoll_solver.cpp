@@ -14,8 +14,8 @@ namespace {
 constexpr double kRigidPi = 3.14159265358979323846;
 constexpr int kRagdollSweeps = 30;  // over all joints and contacts in a substep
 constexpr int kRagdollSubsteps = 64;
-constexpr double kAnchorTolerance = 2e-5;  // [m]
-constexpr double kAngleTolerance = 5e-4;   // [rad]
+constexpr double kAnchorTolerance = 1e-4;  // [m]
+constexpr double kAngleTolerance = 1e-3;   // [rad]
 constexpr double kMinImpact = 0.3;         // slower impacts do not bounce [m/s]
 constexpr double kSlackRate = 2;           // at which slack becomes less [rad/s]
 
@@ -31,19 +31,15 @@ struct BodyBefore {
     RigidVec spin;
 };
 
-RigidVec world_axis(const RigidCapsule& body) {
-    return body.rotation * body.axis;
-}
-
 /// Inverse inertia times a vector; 0 for a fixed body.
 RigidVec inverse_inertia(const RigidCapsule& body, const RigidVec& v) {
-    const RigidVec axis = world_axis(body);
+    const RigidVec& axis = body.axis_now;
     const RigidVec along = glm::dot(axis, v) * axis;
     return body.inverse_along * along + body.inverse_across * (v - along);
 }
 
 RigidVec inertia_times(const RigidCapsule& body, const RigidVec& v) {
-    const RigidVec axis = world_axis(body);
+    const RigidVec& axis = body.axis_now;
     const RigidVec along = glm::dot(axis, v) * axis;
     return along / body.inverse_along + (v - along) / body.inverse_across;
 }
@@ -53,10 +49,27 @@ RigidQuat turned(const RigidQuat& rotation, const RigidVec& turn) {
     return glm::normalize(rotation + 0.5 * (RigidQuat(0, turn.x, turn.y, turn.z) * rotation));
 }
 
+void set_rotation(RigidCapsule& body, const RigidQuat& rotation) {
+    body.rotation = rotation;
+    body.axis_now = rotation * body.axis;
+}
+
 RigidVec turn_between(const RigidQuat& from, const RigidQuat& to) {
     const RigidQuat d = to * glm::conjugate(from);
     const double w = std::abs(d.w) > 1e-6 ? d.w : std::copysign(1e-6, d.w);
     return RigidVec(d.x, d.y, d.z) * (2 / w);
+}
+
+/// Adds [r]^T I^-1 [r] for I^-1 = across + (along - across) axis axis^T.
+void add_response(const RigidCapsule& body, const RigidVec& r, glm::dmat3& k) {
+    const RigidVec s = glm::cross(body.axis_now, r);
+    const double across = body.inverse_across;
+    const double more = body.inverse_along - across;
+    const double r2 = glm::dot(r, r);
+    for (int i = 0; i < 3; ++i) {
+        k[i] += more * s[i] * s - across * r[i] * r;
+        k[i][i] += across * r2;
+    }
 }
 
 /// A pair of bodies and points at which they act on each other.
@@ -69,12 +82,8 @@ struct JointLink {
     /// Matrix K: an impulse p on a, -p on b moves the points apart by -K p.
     [[nodiscard]] glm::dmat3 response() const {
         glm::dmat3 k(a->inverse_mass + b->inverse_mass);
-        for (int i = 0; i < 3; ++i) {
-            RigidVec e(0);
-            e[i] = 1;
-            k[i] += glm::cross(inverse_inertia(*a, glm::cross(ra, e)), ra)
-                    + glm::cross(inverse_inertia(*b, glm::cross(rb, e)), rb);
-        }
+        add_response(*a, ra, k);
+        add_response(*b, rb, k);
         return k;
     }
 };
@@ -118,60 +127,83 @@ double range_excess(double angle, double min, double max) {
     return around_down < above ? -around_down : above;
 }
 
-/// The two limits of a joint in the current rotations.
-void find_excess(
-    const RagdollJoint& joint, const RigidQuat& parent, const RigidQuat& child,
-    JointAngles angles[2]) {
-    const RagdollLimit& limit = joint.limit;
+/// How far a hinge has left its plane.
+JointAngles hinge_tilt(const RagdollLimit& limit, const RigidQuat& base, const RigidQuat& child) {
+    const RigidVec axis(limit.axis);
+    const RigidVec from = base * axis;
+    const RigidVec to = child * axis;
+    const RigidVec across = glm::cross(from, to);
+    const double sine = glm::length(across);
+    return {
+        sine > 1e-12 ? across / sine : base * RigidVec(any_perpendicular(limit.axis)),
+        std::atan2(sine, glm::dot(from, to))};
+}
+
+/// How far a hinge has turned beyond its range.
+JointAngles hinge_excess(const RagdollLimit& limit, const RigidQuat& base, const RigidQuat& child) {
+    const RigidVec axis = base * RigidVec(limit.axis);
+    const RigidVec mark(any_perpendicular(limit.axis));
+    const RigidVec from = base * mark;
+    const RigidVec to = child * mark;
+    const double angle = std::atan2(glm::dot(glm::cross(from, to), axis), glm::dot(from, to));
+    return {
+        axis, range_excess(angle, static_cast<double>(limit.min), static_cast<double>(limit.max))};
+}
+
+/// How far a bone has swung out of its cone.
+JointAngles cone_excess(const RagdollLimit& limit, const RigidQuat& base, const RigidQuat& child) {
+    const RigidVec center = base * RigidVec(limit.center);
+    const RigidVec bone = child * RigidVec(limit.bone);
+    const RigidVec across = glm::cross(center, bone);
+    const double sine = glm::length(across);
+    const double cosine = glm::dot(center, bone);
+    const double narrow = static_cast<double>(std::min(limit.swing, limit.sway));
+    const RigidVec axis = base * RigidVec(limit.axis);
+    if (cosine > 0 && sine < narrow * cosine * 0.5) {  // surely inside: tan x < 2 x there
+        return {axis, 0};
+    }
+    const double swing = std::atan2(sine, cosine);
+    const RigidVec n = sine > 1e-12 ? across / sine : axis;
+    const double u = glm::dot(n, axis) / static_cast<double>(limit.swing);
+    const double v = glm::dot(n, glm::cross(center, axis)) / static_cast<double>(limit.sway);
+    const double bound = 1 / std::sqrt(squared(u) + squared(v) + 1e-12);
+    return {n, std::max(swing - bound, 0.0)};
+}
+
+/// How far a bone is twisted about itself beyond its range.
+JointAngles twist_excess(const RagdollLimit& limit, const RigidQuat& base, const RigidQuat& child) {
+    const RigidVec bone(limit.bone);
+    const RigidQuat d = glm::conjugate(base) * child;
+    const double sine = glm::dot(RigidVec(d.x, d.y, d.z), bone);
+    const double narrow = static_cast<double>(std::min(-limit.min, limit.max));
+    if (2 * std::abs(sine) < narrow * std::abs(d.w)) {  // surely inside: x < tan x
+        return {child * bone, 0};
+    }
+    double twist = 2 * std::atan2(sine, d.w);
+    if (twist > kRigidPi) {
+        twist -= 2 * kRigidPi;
+    } else if (twist < -kRigidPi) {
+        twist += 2 * kRigidPi;
+    }
+    return {
+        child * bone,
+        range_excess(twist, static_cast<double>(limit.min), static_cast<double>(limit.max))};
+}
+
+/// One of the two limits of a joint in these rotations.
+JointAngles
+find_excess(const RagdollJoint& joint, const RigidQuat& parent, const RigidQuat& child, int which) {
     const RigidQuat base = parent * joint.rest;  // of the child at rest
-    const RigidVec axis_local(limit.axis);
-    const RigidVec bone_local(limit.bone);
-    const RigidVec axis_base = base * axis_local;
-    if (limit.kind == RagdollJointKind::Hinge) {
-        const RigidVec axis_child = child * axis_local;
-        const RigidVec across = glm::cross(axis_base, axis_child);
-        const double sine = glm::length(across);
-        angles[0].excess = std::atan2(sine, glm::dot(axis_base, axis_child));
-        angles[0].axis =
-            sine > 1e-12 ? across / sine : base * RigidVec(any_perpendicular(limit.axis));
-        const RigidVec mark(any_perpendicular(limit.axis));
-        const RigidVec from = base * mark;
-        const RigidVec to = child * mark;
-        const double angle =
-            std::atan2(glm::dot(glm::cross(from, to), axis_base), glm::dot(from, to));
-        angles[1].excess =
-            range_excess(angle, static_cast<double>(limit.min), static_cast<double>(limit.max));
-        angles[1].axis = axis_base;
+    const bool is_hinge = joint.limit.kind == RagdollJointKind::Hinge;
+    JointAngles angles;
+    if (which == 0) {
+        angles =
+            is_hinge ? hinge_tilt(joint.limit, base, child) : cone_excess(joint.limit, base, child);
     } else {
-        const RigidVec center = base * RigidVec(limit.center);
-        const RigidVec bone = child * bone_local;
-        const RigidVec across = glm::cross(center, bone);
-        const double sine = glm::length(across);
-        const double swing = std::atan2(sine, glm::dot(center, bone));
-        const RigidVec n = sine > 1e-12 ? across / sine : axis_base;
-        const double u = glm::dot(n, axis_base);
-        const double v = glm::dot(n, glm::cross(center, axis_base));
-        const double bound = 1
-                             / std::sqrt(
-                                 squared(u / static_cast<double>(limit.swing))
-                                 + squared(v / static_cast<double>(limit.sway)) + 1e-12);
-        angles[0] = {n, std::max(swing - bound, 0.0)};
-        const RigidQuat d = glm::conjugate(base) * child;
-        double twist = 2 * std::atan2(glm::dot(RigidVec(d.x, d.y, d.z), bone_local), d.w);
-        if (twist > kRigidPi) {
-            twist -= 2 * kRigidPi;
-        } else if (twist < -kRigidPi) {
-            twist += 2 * kRigidPi;
-        }
-        angles[1].excess =
-            range_excess(twist, static_cast<double>(limit.min), static_cast<double>(limit.max));
-        angles[1].axis = bone;
+        angles = is_hinge ? hinge_excess(joint.limit, base, child)
+                          : twist_excess(joint.limit, base, child);
     }
-    for (int i = 0; i < 2; ++i) {
-        if (angles[i].excess < 0) {
-            angles[i] = {-angles[i].axis, -angles[i].excess};
-        }
-    }
+    return angles.excess < 0 ? JointAngles{-angles.axis, -angles.excess} : angles;
 }
 
 class RagdollSubstep {
@@ -238,10 +270,10 @@ class RagdollSubstep {
             RigidCapsule half = body;
             RigidVec spin = body.spin;
             for (int k = 0; k < 3; ++k) {
-                half.rotation = turned(body.rotation, 0.5 * h_ * spin);
+                set_rotation(half, turned(body.rotation, 0.5 * h_ * spin));
                 spin = inverse_inertia(half, momentum);
             }
-            body.rotation = turned(body.rotation, h_ * spin);
+            set_rotation(body, turned(body.rotation, h_ * spin));
         }
     }
 
@@ -255,7 +287,7 @@ class RagdollSubstep {
             body.velocity = (body.position - before.position) / h_;
             const RigidVec turn = turn_between(before.rotation, body.rotation);
             RigidCapsule half = body;
-            half.rotation = turned(before.rotation, 0.5 * turn);
+            set_rotation(half, turned(before.rotation, 0.5 * turn));
             body.spin = inverse_inertia(body, inertia_times(half, turn / h_));
         }
     }
@@ -268,7 +300,8 @@ class RagdollSubstep {
 
     static void push(RigidCapsule& body, const RigidVec& r, const RigidVec& impulse) {
         body.position += body.inverse_mass * impulse;
-        body.rotation = turned(body.rotation, inverse_inertia(body, glm::cross(r, impulse)));
+        const RigidVec way = inverse_inertia(body, glm::cross(r, impulse));
+        set_rotation(body, turned(body.rotation, way));
     }
 
     /// Turns b relative to a by -angle about n.
@@ -281,22 +314,21 @@ class RagdollSubstep {
         const double share = angle / unit.response;
         link.a->position += share * link.a->inverse_mass * unit.impulse;
         link.b->position -= share * link.b->inverse_mass * unit.impulse;
-        link.a->rotation = turned(link.a->rotation, share * unit.turn_a);
-        link.b->rotation = turned(link.b->rotation, share * unit.turn_b);
+        set_rotation(*link.a, turned(link.a->rotation, share * unit.turn_a));
+        set_rotation(*link.b, turned(link.b->rotation, share * unit.turn_b));
     }
 
     void solve_joint(const RagdollJoint& joint) {
         JointLink points = link(joint);
-        glm::dmat3 inverse = glm::inverse(points.response());
-        JointAngles angles[2];
+        const glm::dmat3 inverse = glm::inverse(points.response());
         for (int i = 0; i < 2; ++i) {
-            find_excess(joint, points.a->rotation, points.b->rotation, angles);
-            const double excess = angles[i].excess - joint.slack;
+            const JointAngles angles =
+                find_excess(joint, points.a->rotation, points.b->rotation, i);
+            const double excess = angles.excess - joint.slack;
             if (excess > 0) {
                 angle_ = std::max(angle_, excess);
-                turn(points, inverse, angles[i].axis, excess);
+                turn(points, inverse, angles.axis, excess);
                 points = link(joint);
-                inverse = glm::inverse(points.response());
             }
         }
         close_anchor(points, inverse);
@@ -509,6 +541,9 @@ void step_ragdoll(
     const int count = static_cast<int>(std::clamp(wanted, 1.0, double{kRagdollSubsteps}));
     const double h = dt / count;
     std::vector<RagdollContact> contacts;
+    for (RigidCapsule& body : scene.bodies) {
+        set_rotation(body, body.rotation);
+    }
     RagdollSubstep substep(scene, h, options);
     for (int i = 0; i < count; ++i) {
         for (RagdollJoint& joint : scene.joints) {
@@ -527,10 +562,10 @@ double anchor_error(const RagdollScene& scene, const RagdollJoint& joint) {
 }
 
 double limit_excess(const RagdollScene& scene, const RagdollJoint& joint) {
-    JointAngles angles[2];
-    find_excess(
-        joint, scene.bodies[joint.parent].rotation, scene.bodies[joint.child].rotation, angles);
-    return std::max(angles[0].excess, angles[1].excess);
+    const RigidQuat& parent = scene.bodies[joint.parent].rotation;
+    const RigidQuat& child = scene.bodies[joint.child].rotation;
+    return std::max(
+        find_excess(joint, parent, child, 0).excess, find_excess(joint, parent, child, 1).excess);
 }
 
 }  // namespace limn

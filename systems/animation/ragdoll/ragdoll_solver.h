@@ -36,6 +36,7 @@ struct RigidCapsule {
     LineSegment segment{};              ///< in the body's space, about the center of mass
     RigidVec axis = RigidVec(0, 1, 0);  ///< of the segment, unit, in the body's space
     double radius = 0.05;
+    RigidVec axis_now = RigidVec(0, 1, 0);  ///< the axis in the world; follows `rotation` in steps
 
     [[nodiscard]] LineSegment placed() const {
         return {position + rotation * segment.from, position + rotation * segment.to};
