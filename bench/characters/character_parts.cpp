@@ -7,6 +7,7 @@ void add_chain_rows(CharacterBench& bench);
 void add_vertex_rows(CharacterBench& bench);
 void add_ik_rows(CharacterBench& bench);
 void add_memory_rows(CharacterBench& bench);
+void add_ragdoll_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
 
 std::span<const CharacterPart> character_parts() {
@@ -17,6 +18,7 @@ std::span<const CharacterPart> character_parts() {
         {"ik", add_ik_rows},            // 10 .. 12
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
+        {"ragdoll", add_ragdoll_rows},
     };
     return kParts;
 }
