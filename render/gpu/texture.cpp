@@ -17,6 +17,9 @@ constexpr FormatInfo
 color(GLenum format, const char* name, int channels, int bytes, GLenum pixel_format, GLenum type) {
     return {format, name, channels, bytes, pixel_format, type, false, false, false};
 }
+constexpr FormatInfo blocks(GLenum format, const char* name, int channels) {
+    return {format, name, channels, 16, GL_NONE, GL_NONE, false, false, false};
+}
 constexpr FormatInfo integer(
     GLenum format, const char* name, int channels, int bytes, GLenum pixel_format, GLenum type) {
     return {format, name, channels, bytes, pixel_format, type, false, false, true};
@@ -48,6 +51,9 @@ constexpr std::array kFormats = {
     color(GL_RGBA32F, "RGBA32F", 4, 16, GL_RGBA, GL_FLOAT),
     color(GL_R11F_G11F_B10F, "R11F_G11F_B10F", 3, 4, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV),
     color(GL_RGB10_A2, "RGB10_A2", 4, 4, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV),
+    blocks(GL_COMPRESSED_RG_RGTC2, "BC5", 2),
+    blocks(GL_COMPRESSED_RGBA_BPTC_UNORM, "BC7", 4),
+    blocks(GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM, "SRGB_BC7", 4),
     integer(GL_R8UI, "R8UI", 1, 1, GL_RED_INTEGER, GL_UNSIGNED_BYTE),
     integer(GL_RGBA8UI, "RGBA8UI", 4, 4, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE),
     integer(GL_R16UI, "R16UI", 1, 2, GL_RED_INTEGER, GL_UNSIGNED_SHORT),
@@ -157,6 +163,19 @@ int full_level_count(int width, int height, int depth) {
     return levels;
 }
 
+namespace {
+
+int block_side(const FormatInfo& info) {
+    return info.pixel_format == GL_NONE ? 4 : 1;
+}
+
+/// Blocks along a side [px].
+std::size_t level_blocks(const FormatInfo& info, int side) {
+    return static_cast<std::size_t>((side + block_side(info) - 1) / block_side(info));
+}
+
+}  // namespace
+
 std::size_t texture_bytes(const TextureDesc& desc) {
     const bool volume = desc.target == GL_TEXTURE_3D;
     const int levels = desc.levels > 0
@@ -164,14 +183,15 @@ std::size_t texture_bytes(const TextureDesc& desc) {
                            : full_level_count(desc.width, desc.height, volume ? desc.depth : 1);
     const auto layers =
         static_cast<std::size_t>(desc.target == GL_TEXTURE_CUBE_MAP ? 6 : desc.depth);
-    std::size_t pixels = 0;
+    const FormatInfo& info = format_info(desc.format);
+    std::size_t blocks = 0;  // of one pixel, in most formats
     for (int level = 0; level < levels; ++level) {
         const std::size_t slices =
             volume ? static_cast<std::size_t>(std::max(desc.depth >> level, 1)) : layers;
-        pixels += static_cast<std::size_t>(std::max(desc.width >> level, 1))
-                  * static_cast<std::size_t>(std::max(desc.height >> level, 1)) * slices;
+        blocks += level_blocks(info, std::max(desc.width >> level, 1))
+                  * level_blocks(info, std::max(desc.height >> level, 1)) * slices;
     }
-    return pixels * static_cast<std::size_t>(format_info(desc.format).bytes)
+    return blocks * static_cast<std::size_t>(info.bytes)
            * static_cast<std::size_t>(std::max(desc.samples, 1));
 }
 
@@ -232,9 +252,10 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
         set_defaults();
     }
     object_.set_bytes(texture_bytes(desc_));
-    if (desc.samples == 0 && !format_info(desc.format).integer && fills_undefined_memory()) {
+    const FormatInfo& info = format_info(desc.format);
+    if (desc.samples == 0 && !info.integer && block_side(info) == 1 && fills_undefined_memory()) {
         for (int level = 0; level < desc_.levels; ++level) {
-            clear(undefined_value(format_info(desc.format)), level);
+            clear(undefined_value(info), level);
         }
     }
 }
@@ -300,7 +321,24 @@ void Texture::upload(
 
 void Texture::upload(std::span<const std::byte> pixels, int level, int layer) {
     const FormatInfo& info = format_info(desc_.format);
-    upload(pixels, info.pixel_format, info.pixel_type, level, layer);
+    if (block_side(info) == 1) {
+        upload(pixels, info.pixel_format, info.pixel_type, level, layer);
+        return;
+    }
+    LIMN_CHECK(level >= 0 && level < desc_.levels && layer < layers(level));
+    const int count = layer < 0 ? layers(level) : 1;
+    const std::size_t needed = level_blocks(info, width(level)) * level_blocks(info, height(level))
+                               * static_cast<std::size_t>(info.bytes * count);
+    LIMN_CHECK(pixels.size() >= needed);
+    if (has_depth(target_) || is_cube(target_)) {
+        glCompressedTextureSubImage3D(
+            id(), level, 0, 0, std::max(layer, 0), width(level), height(level), count, desc_.format,
+            static_cast<GLsizei>(needed), pixels.data());
+    } else {
+        glCompressedTextureSubImage2D(
+            id(), level, 0, 0, width(level), height(level), desc_.format,
+            static_cast<GLsizei>(needed), pixels.data());
+    }
 }
 
 void Texture::copy_to(const Texture& target, int layer) const {
@@ -330,6 +368,7 @@ void Texture::clear(const Vec4& value, int level) {
 }
 
 void Texture::generate_mipmaps() {
+    LIMN_CHECK(block_side(format_info(desc_.format)) == 1);
     glGenerateTextureMipmap(id());
 }
 

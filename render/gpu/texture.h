@@ -12,13 +12,14 @@ namespace limn::gpu {
 struct DeviceCaps;
 
 /// Properties of an image format. Transfers to and from the CPU use `pixel_format` and
-/// `pixel_type`.
+/// `pixel_type`. Formats in blocks of 4 x 4 pixels (BC5, BC7) have neither: they are uploaded as
+/// they are, cannot be drawn to and make no mip levels. OpenGL 4.5 always has them.
 struct FormatInfo {
     GLenum format = GL_NONE;        ///< sized, e.g. GL_RGBA16F
     const char* name = "unknown";   ///< "RGBA16F"
     int channels = 0;               ///< 1 .. 4; depth and depth-stencil count 1
-    int bytes = 0;                  ///< per pixel on the GPU; 0 for unsupported formats
-    GLenum pixel_format = GL_NONE;  ///< e.g. GL_RGBA, GL_RED_INTEGER, GL_DEPTH_COMPONENT
+    int bytes = 0;                  ///< per pixel or block on the GPU; 0 for unsupported formats
+    GLenum pixel_format = GL_NONE;  ///< e.g. GL_RGBA, GL_RED_INTEGER; GL_NONE: in blocks
     GLenum pixel_type = GL_NONE;    ///< e.g. GL_HALF_FLOAT
     bool depth = false;
     bool stencil = false;
@@ -66,7 +67,7 @@ class Texture {
     void upload(
         std::span<const std::byte> pixels, GLenum format, GLenum type, int level = 0,
         int layer = -1);
-    /// The same in the format's own pixel_format and pixel_type.
+    /// The same in the format's own pixel_format and pixel_type, or in its blocks.
     void upload(std::span<const std::byte> pixels, int level = 0, int layer = -1);
     template <typename T>
     void

@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/base/srgb.h"
+#include "ecs/components/image_blocks.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
@@ -62,11 +63,7 @@ std::vector<Vec4> resample(const ImageData& image) {
 }
 
 bool is_complete(const ImageData& image) {
-    const std::size_t bytes = image.format == PixelFormat::Rgba8     ? 4
-                              : image.format == PixelFormat::Rgba16F ? 8
-                                                                     : 16;
-    return image.width > 0 && image.height > 0
-           && image.pixels.size() >= bytes * image.width * image.height;
+    return image.width > 0 && image.height > 0 && image.pixels.size() >= level_bytes(image, 0);
 }
 
 }  // namespace
@@ -143,7 +140,10 @@ int ProjectorPool::layer_of(const Assets& assets, ImageId image) {
                                  .target = GL_TEXTURE_2D_ARRAY});
     }
     layers_.push_back(image);
-    const std::vector<Vec4> texels = resample(assets.images[image.index]);
+    const ImageData& data = assets.images[image.index];
+    const bool in_blocks = is_in_blocks(data.format);
+    const ImageData decoded = in_blocks ? decoded_level(data) : ImageData{};
+    const std::vector<Vec4> texels = resample(in_blocks ? decoded : data);
     images_.upload<Vec4>(texels, GL_RGBA, GL_FLOAT, 0, layer);
     images_.generate_mipmaps();
     return layer;

@@ -5,6 +5,12 @@
 
 namespace limn {
 
+ImageLayer find_drawn_image(const ImagePool& images, ImageId id) {
+    const ImageLayer location = images.find(id);
+    const GLenum format = images.array(location.array).desc().format;
+    return gpu::format_info(format).pixel_format != GL_NONE ? location : ImageLayer{};
+}
+
 TextureId create_drawn_image(FrameGraph& graph, const ImagePool& images, ImageLayer location) {
     const gpu::Texture& array = images.array(location.array);
     return create_target(

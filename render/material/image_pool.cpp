@@ -1,6 +1,7 @@
 #include "render/material/image_pool.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/image_blocks.h"
 #include "render/gpu/device.h"
 #include "render/material/normal_mips.h"
 #include "render/shaders/material_maps_gpu.h"
@@ -13,35 +14,28 @@ namespace {
 /// Larger arrays are split: drivers allocate an array in one piece.
 constexpr std::size_t kMaxArrayBytes = std::size_t{256} << 20;
 
-struct ImageFormat {
-    GLenum format;
-    GLenum type;
-    std::size_t bytes;
-};
-
-ImageFormat image_format(const ImageData& image) {
+GLenum image_format(const ImageData& image, bool decoded) {
     switch (image.format) {
-    case PixelFormat::Rgba8:
-        return {static_cast<GLenum>(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8), GL_UNSIGNED_BYTE, 4};
     case PixelFormat::Rgba16F:
-        return {GL_RGBA16F, GL_HALF_FLOAT, 8};
+        return GL_RGBA16F;
     case PixelFormat::Rgba32F:
-        return {GL_RGBA32F, GL_FLOAT, 16};
+        return GL_RGBA32F;
     case PixelFormat::Bc5:
+        return decoded ? GL_RGBA8 : GL_COMPRESSED_RG_RGTC2;
     case PixelFormat::Bc7:
+        if (!decoded) {
+            return image.srgb ? GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM : GL_COMPRESSED_RGBA_BPTC_UNORM;
+        }
+        break;
+    case PixelFormat::Rgba8:
         break;
     }
-    return {GL_RGBA8, GL_UNSIGNED_BYTE, 4};
-}
-
-/// Bytes of level 0. The image must not be empty.
-std::size_t image_bytes(const ImageData& image) {
-    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)
-           * image_format(image).bytes;
+    return image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
 }
 
 bool is_valid_image(const ImageData& image, int limit) {
     return image.width > 0 && image.height > 0 && image.width <= limit && image.height <= limit
+           && image.mip_levels > 0 && image.mip_levels <= max_mip_levels(image.width, image.height)
            && image.pixels.size() >= image_bytes(image);
 }
 
@@ -56,13 +50,35 @@ bool lacks(const std::optional<NormalMips>& has, NormalMips wanted) {
     return !has || *has < wanted;
 }
 
-gpu::TextureDesc array_of(const ImageData& image) {
+/// In the software profile, since software OpenGL decodes a block for each texel that it samples.
+bool is_decoded(const gpu::Device& device, const ImageData& image) {
+    return is_in_blocks(image.format) && device.caps().profile == gpu::Profile::Software;
+}
+
+gpu::TextureDesc array_of(const gpu::Device& device, const ImageData& image) {
+    const bool decoded = is_decoded(device, image);
     return {
-        .format = image_format(image).format,
+        .format = image_format(image, decoded),
         .width = image.width,
         .height = image.height,
-        .levels = 0,
+        .levels = is_in_blocks(image.format) && !decoded ? image.mip_levels : 0,
         .target = GL_TEXTURE_2D_ARRAY};
+}
+
+bool is_in_blocks(const gpu::Texture& texture) {
+    return gpu::format_info(texture.desc().format).pixel_format == GL_NONE;
+}
+
+void upload_level(
+    gpu::Texture& array, const ImageLayer& location, const ImageData& image, int level,
+    bool decoded) {
+    const auto layer = static_cast<int>(location.layer);
+    if (decoded) {
+        const ImageData texels = decoded_level(image, level);
+        array.upload(std::as_bytes(std::span(texels.pixels)), level, layer);
+    } else {
+        array.upload(std::as_bytes(level_pixels(image, level)), level, layer);
+    }
 }
 
 bool has_room(const gpu::TextureDesc& array, const gpu::TextureDesc& wanted, int max_layers) {
@@ -94,17 +110,33 @@ void ImagePool::update(std::span<const ImageData> images, const NormalMaps& norm
     for (const gpu::TextureDesc& desc : allocate_layers(images, normal_maps)) {
         create_array(desc);
     }
+    // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
+    const auto upload = [&](std::size_t i, int level) {
+        upload_level(
+            arrays_[images_[i].location.array].texture, images_[i].location, images[i], level,
+            is_decoded(device_, images[i]));
+    };
+    bool decodes = false;
     for (std::size_t i = first; i < images.size(); ++i) {
-        const ImageLayer location = images_[i].location;
-        if (location.array != 0) {
-            // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
-            arrays_[location.array].texture.upload<std::uint8_t>(
-                std::span(images[i].pixels).first(image_bytes(images[i])), GL_RGBA,
-                image_format(images[i]).type, 0, static_cast<int>(location.layer));
+        if (images_[i].location.array != 0) {
+            upload(i, 0);
+            decodes = decodes || is_decoded(device_, images[i]);
         }
     }
+    if (decodes) {
+        log_info("images in blocks are decoded: software OpenGL samples them slowly");
+    }
     for (std::size_t i = first_array; i < arrays_.size(); ++i) {
-        arrays_[i].texture.generate_mipmaps();
+        if (!is_in_blocks(arrays_[i].texture)) {
+            arrays_[i].texture.generate_mipmaps();
+        }
+    }
+    for (std::size_t i = first; i < images.size(); ++i) {
+        const std::uint32_t array = images_[i].location.array;
+        for (int level = 1; array != 0 && level < images[i].mip_levels; ++level) {
+            upload(i, level);
+            arrays_[array].has_normals = true;
+        }
     }
     for (std::size_t i = first; i < images.size(); ++i) {
         if (images_[i].location.array != 0) {
@@ -127,11 +159,14 @@ void ImagePool::upload_normals(Image& image, const ImageData& data, NormalMips m
     }
     Array& array = arrays_[image.location.array];
     array.has_normals = true;
+    const bool in_blocks = is_in_blocks(data.format);
+    const bool stays = in_blocks && !is_decoded(device_, data);  // with the means in its own levels
+    const ImageData decoded = in_blocks ? decoded_level(data) : ImageData{};
     int level = 0;
-    for (const NormalLevel& texels : make_normal_levels(data, mips)) {
-        if (!texels.normals.empty()) {
-            array.texture.upload<std::uint8_t>(
-                texels.normals, GL_RGBA, image_format(data).type, level,
+    for (const NormalLevel& texels : make_normal_levels(in_blocks ? decoded : data, mips)) {
+        if (!texels.normals.empty() && !stays) {
+            array.texture.upload(
+                std::as_bytes(std::span(texels.normals)), level,
                 static_cast<int>(image.location.layer));
         }
         if (!texels.spread.empty()) {
@@ -153,7 +188,7 @@ void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
     gpu::TextureDesc level = array.texture.desc();
     level.levels = 1;
     level.depth = 1;
-    if (pixels.size() != gpu::texture_bytes(level)) {
+    if (pixels.size() != gpu::texture_bytes(level) || is_in_blocks(array.texture)) {
         return;
     }
     if (!array.has_normals) {
@@ -210,13 +245,14 @@ ImagePool::allocate_layers(std::span<const ImageData> images, const NormalMaps& 
                 image.name, image.width, image.height, image.pixels.size(), max_size);
             continue;
         }
-        images_.back().location = allocate_layer(arrays, array_of(image));
+        images_.back().location = allocate_layer(arrays, array_of(device_, image));
     }
     for (const auto& [index, mips] : normal_maps) {
         if (index < images.size() && mips != NormalMips::Plain && images_[index].spread.array == 0
             && images_[index].location.array != 0) {
-            gpu::TextureDesc spread = array_of(images[index]);
+            gpu::TextureDesc spread = array_of(device_, images[index]);
             spread.format = GL_RGBA8;
+            spread.levels = 0;
             images_[index].spread = allocate_layer(arrays, spread);
         }
     }

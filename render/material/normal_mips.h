@@ -32,7 +32,7 @@ struct NormalLevel {
     std::vector<std::uint8_t> spread;   ///< RGBA8; empty for NormalMips::Plain
 };
 
-/// All levels of a valid image, the first of which is the image itself.
+/// All levels of a valid image that is not in blocks, the first of which is the image itself.
 [[nodiscard]] std::vector<NormalLevel> make_normal_levels(const ImageData& image, NormalMips mips);
 
 }  // namespace limn

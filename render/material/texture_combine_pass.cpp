@@ -37,7 +37,7 @@ void TextureCombineEffect::collect(FrameData& frame) {
     auto& drawn = frame.data.publish<DrawnImages>();
     drawn.arrays.clear();
     frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
-        drawn.arrays.push_back(&images.array(images.find(combine.target).array));
+        drawn.arrays.push_back(&images.array(find_drawn_image(images, combine.target).array));
     });
 }
 
@@ -46,7 +46,7 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
     frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
         const gpu::Texture* water = images.find_texture(combine.water);
         const gpu::Texture* grating = images.find_texture(combine.grating);
-        const ImageLayer target = images.find(combine.target);
+        const ImageLayer target = find_drawn_image(images, combine.target);
         if (water == nullptr || grating == nullptr || target.array == 0
             || combine.target == combine.water || combine.target == combine.grating) {
             return;

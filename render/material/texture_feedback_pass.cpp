@@ -49,7 +49,7 @@ void TextureFeedbackEffect::collect(FrameData& frame) {
     auto& drawn = frame.data.publish<FeedbackImages>();
     drawn.arrays.clear();
     frame.world->query<const TextureFeedback>().each([&](const TextureFeedback& feedback) {
-        drawn.arrays.push_back(&images.array(images.find(feedback.target).array));
+        drawn.arrays.push_back(&images.array(find_drawn_image(images, feedback.target).array));
     });
     if (std::exchange(assets, frame.assets_identity) != frame.assets_identity) {
         states.clear();
@@ -67,7 +67,7 @@ void TextureFeedbackEffect::draw_shared(FrameGraph& graph, const FrameData& fram
 void TextureFeedbackEffect::draw_one(
     FrameGraph& graph, const FrameData& frame, const TextureFeedback& settings, State& state) {
     const ImagePool& images = frame.materials->images();
-    const ImageLayer target = images.find(settings.target);
+    const ImageLayer target = find_drawn_image(images, settings.target);
     if (images.find_texture(settings.start) == nullptr || target.array == 0
         || settings.start == settings.target) {
         return;

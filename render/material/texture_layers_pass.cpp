@@ -93,14 +93,14 @@ void TextureLayersEffect::collect(FrameData& frame) {
     auto& drawn = frame.data.publish<LayeredImages>();
     drawn.arrays.clear();
     frame.world->query<const TextureLayers>().each([&](const TextureLayers& stack) {
-        drawn.arrays.push_back(&images.array(images.find(stack.target).array));
+        drawn.arrays.push_back(&images.array(find_drawn_image(images, stack.target).array));
     });
 }
 
 void TextureLayersEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     const ImagePool& images = frame.materials->images();
     frame.world->query<const TextureLayers>().each([&](const TextureLayers& stack) {
-        const ImageLayer target = images.find(stack.target);
+        const ImageLayer target = find_drawn_image(images, stack.target);
         if (target.array == 0) {
             return;
         }

@@ -38,7 +38,7 @@ void TextureShadeEffect::collect(FrameData& frame) {
     auto& shaded = frame.data.publish<ShadedImages>();
     shaded.arrays.clear();
     frame.world->query<const TextureShade>().each([&](const TextureShade& shade) {
-        shaded.arrays.push_back(&images.array(images.find(shade.target).array));
+        shaded.arrays.push_back(&images.array(find_drawn_image(images, shade.target).array));
     });
 }
 
@@ -47,7 +47,7 @@ void TextureShadeEffect::draw_shared(FrameGraph& graph, const FrameData& frame) 
     const auto draw = [&](const TextureShade& shade, const WorldTransform& transform) {
         const gpu::Texture* normals = images.find_texture(shade.normals);
         const gpu::Texture* color = images.find_texture(shade.color);
-        const ImageLayer target = images.find(shade.target);
+        const ImageLayer target = find_drawn_image(images, shade.target);
         if (normals == nullptr || color == nullptr || target.array == 0
             || shade.target == shade.normals || shade.target == shade.color) {
             return;

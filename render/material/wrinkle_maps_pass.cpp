@@ -49,7 +49,7 @@ void WrinkleMapsEffect::collect(FrameData& frame) {
     auto& wrinkled = frame.data.publish<WrinkledImages>();
     wrinkled.arrays.clear();
     frame.world->query<const WrinkleMaps>().each([&](const WrinkleMaps& maps) {
-        wrinkled.arrays.push_back(&images.array(images.find(maps.target).array));
+        wrinkled.arrays.push_back(&images.array(find_drawn_image(images, maps.target).array));
     });
 }
 
@@ -66,7 +66,7 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const std::array<ImageId, 5> sources = {
             maps.base, maps.stretched, maps.compressed, maps.first_masks,
             more ? maps.second_masks : maps.first_masks};
-        const ImageLayer target = images.find(maps.target);
+        const ImageLayer target = find_drawn_image(images, maps.target);
         const auto is_unfit = [&](ImageId source) {
             return images.find_texture(source) == nullptr || source == maps.target
                    || !have_one_aspect(

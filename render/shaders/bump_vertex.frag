@@ -34,7 +34,7 @@ float unshadowed_part(float cosine) {
 void main() {
     vec3 n = vec3(0.0, 0.0, 1.0);
 #ifdef NORMAL_MAP
-    n = MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz * 2.0 - 1.0;
+    n = tangent_normal(MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz);
     n.xy *= material_texel(1).w;
     n = unit_vector(n);
 #endif

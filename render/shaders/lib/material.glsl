@@ -123,6 +123,12 @@ vec3 surface_emission() {
     return emission;
 }
 
+// Of a texel of a tangent-space map. Two channels (BC5) have no blue, which then reads as 0.
+vec3 tangent_normal(vec3 texel) {
+    vec3 n = texel * 2.0 - 1.0;
+    return texel.z > 0.0 ? n : vec3(n.xy, sqrt(max(1.0 - dot(n.xy, n.xy), 0.0)));
+}
+
 #ifndef LIT_AT_VERTICES
 // The normal, with and without the hooks' changes.
 vec3 surface_normal(float strength, out vec3 smooth_normal) {
@@ -132,11 +138,11 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
     vec3 n_ts = vec3(0.0, 0.0, 1.0);
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
 #ifdef NORMAL_MAP
-    n_ts = MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz * 2.0 - 1.0;
+    n_ts = tangent_normal(MAP_TEXEL(NORMAL_MAP, kNormalSlot).xyz);
     n_ts.xy *= strength;
 #endif
 #ifdef DETAIL_MAP
-    vec3 detail = MAP_TEXEL(DETAIL_MAP, kDetailSlot).xyz * 2.0 - 1.0;
+    vec3 detail = tangent_normal(MAP_TEXEL(DETAIL_MAP, kDetailSlot).xyz);
     n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
 #endif
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
@@ -241,7 +247,7 @@ SurfaceLayers surface_layers(vec3 normal) {
     SurfaceLayers layers = plain_layers(normal);
     layers.coat_normal_ws = from_tangent_space(vec3(0.0, 0.0, 1.0));
 #ifdef CLEARCOAT_NORMAL_MAP
-    vec3 coat_ts = MAP_TEXEL(CLEARCOAT_NORMAL_MAP, kClearcoatNormalSlot).xyz * 2.0 - 1.0;
+    vec3 coat_ts = tangent_normal(MAP_TEXEL(CLEARCOAT_NORMAL_MAP, kClearcoatNormalSlot).xyz);
     coat_ts.xy *= block_texel(material_and_flags.x, kLayersBlock, 4).x;
     layers.coat_normal_ws = from_tangent_space(coat_ts);
 #endif
