@@ -226,7 +226,6 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<CrowdLibrary>(world);
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);
-
     resource_or_default<CrowdMemory>(world);
     return resource_or_default<FrameTime>(world);
 }
