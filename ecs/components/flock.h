@@ -31,8 +31,7 @@ LIMN_FIELDS(FlockParams) {
     LIMN_FIELD(radius, "within which others are neighbors", "m", 0.01, 1000);
     LIMN_FIELD(separation, "within which they and obstacles are avoided", "m", 0, 1000);
     LIMN_FIELD(
-        view, "angle to the heading up to which others are seen; pi: all around", "rad", 0,
-        3.1416);
+        view, "angle to the heading up to which others are seen; pi: all around", "rad", 0, 3.1416);
     LIMN_FIELD(avoid, "1. acceleration away from a neighbor at 1 m", "m/s2", 0, 1000);
     LIMN_FIELD(match, "2. toward the neighbors' mean velocity, per difference", "1/s", 0, 1000);
     LIMN_FIELD(center, "3. toward the neighbors' center, per distance", "1/s2", 0, 1000);

@@ -184,13 +184,10 @@ find_deepest_contact(std::span<const PlacedGround> grounds, const Capsule& capsu
         }
         visit_triangles(
             *ground.mesh, mapped(ground.local, bounds),
-            [&](const MeshBvh::Leaf& leaf, std::size_t lane) {
-                TriangleCorners corners{};
-                for (std::size_t i = 0; i < 3; ++i) {
-                    corners[i] = transform_point(
-                        ground.world, {leaf.corner[i][0][lane], leaf.corner[i][1][lane],
-                                       leaf.corner[i][2][lane]});
-                }
+            [&](std::uint32_t, const Vec3& a, const Vec3& b, const Vec3& c) {
+                const TriangleCorners corners = {
+                    transform_point(ground.world, a), transform_point(ground.world, b),
+                    transform_point(ground.world, c)};
                 const std::optional<CapsuleContact> contact = touch_triangle(capsule, corners);
                 if (contact && (!deepest || contact->depth > deepest->contact.depth)) {
                     deepest = GroundContact{*contact, ground.entity};

@@ -68,32 +68,47 @@ void refit_mesh_bvh(
 /// for segments that are not finite or shorter than 1e-30.
 [[nodiscard]] MeshHit first_hit(const MeshBvh& bvh, const Segment& segment);
 
-/// Calls visit(leaf, lane) for every triangle of the leaves whose boxes overlap `bounds`, in the
-/// order of the tree; some of them do not overlap themselves.
+/// Calls visit(number, a, b, c) for the triangles whose bounds overlap the box, in the order of the
+/// tree.
 template <typename Visit>
-void visit_triangles(const MeshBvh& bvh, const Bounds& bounds, Visit visit) {
-    std::vector<std::uint32_t> open;
-    if (!bvh.nodes.empty()) {
-        open.push_back(0);
+void visit_triangles(const MeshBvh& bvh, const Bounds& box, Visit&& visit) {
+    if (bvh.nodes.empty()) {
+        return;
     }
+    std::vector<std::uint32_t> open = {0};
     while (!open.empty()) {
-        const std::uint32_t next = open.back();
+        const std::uint32_t index = open.back();
         open.pop_back();
-        if ((next & MeshBvh::kLeafBit) != 0) {
-            const MeshBvh::Leaf& leaf = bvh.leaves[next & ~MeshBvh::kLeafBit];
-            for (std::size_t lane = 0; lane < MeshBvh::kTriangles; ++lane) {
-                if (leaf.triangle[lane] != kNoTriangle) {
-                    visit(leaf, lane);
+        if ((index & MeshBvh::kLeafBit) != 0) {
+            const MeshBvh::Leaf& leaf = bvh.leaves[index & ~MeshBvh::kLeafBit];
+            for (std::size_t t = 0; t < MeshBvh::kTriangles; ++t) {
+                if (leaf.triangle[t] == kNoTriangle) {
+                    continue;
+                }
+                Vec3 corners[3];
+                Bounds own;
+                for (int k = 0; k < 3; ++k) {
+                    const auto& corner = leaf.corner[k];
+                    corners[k] = {corner[0][t], corner[1][t], corner[2][t]};
+                    grow(own, corners[k]);
+                }
+                bool touches = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    touches =
+                        touches && own.min[axis] <= box.max[axis] && box.min[axis] <= own.max[axis];
+                }
+                if (touches) {
+                    visit(leaf.triangle[t], corners[0], corners[1], corners[2]);
                 }
             }
             continue;
         }
-        const MeshBvh::Node& node = bvh.nodes[next];
+        const MeshBvh::Node& node = bvh.nodes[index];
         for (std::size_t i = 0; i < MeshBvh::kChildren; ++i) {
             bool overlaps = node.child[i] != MeshBvh::kNoChild;
             for (int axis = 0; axis < 3; ++axis) {
-                overlaps = overlaps && node.bounds[0][axis][i] <= bounds.max[axis]
-                           && node.bounds[1][axis][i] >= bounds.min[axis];
+                overlaps = overlaps && node.bounds[0][axis][i] <= box.max[axis]
+                           && node.bounds[1][axis][i] >= box.min[axis];
             }
             if (overlaps) {
                 open.push_back(node.child[i]);

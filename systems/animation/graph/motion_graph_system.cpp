@@ -17,11 +17,11 @@ namespace limn {
 namespace {
 
 constexpr float kVelocityInterval = 1.0f / 1000.0f;  ///< over which velocities are measured [s]
-constexpr int kMaxEnds = 4;                         ///< of clips, in one step
-constexpr float kLastPhase = 1.0f - 1e-6f;          ///< still moving: the pose is not held yet
-constexpr float kTurnTime = 0.25f;                  ///< in which a heading is corrected [s]
-constexpr float kTurnResponse = 0.1f;               ///< of the rate of the turn [s]
-constexpr float kTurnSpeed = 0.3f;                  ///< share of the speed that is left in a turn
+constexpr int kMaxEnds = 4;                          ///< of clips, in one step
+constexpr float kLastPhase = 1.0f - 1e-6f;           ///< still moving: the pose is not held yet
+constexpr float kTurnTime = 0.25f;                   ///< in which a heading is corrected [s]
+constexpr float kTurnResponse = 0.1f;                ///< of the rate of the turn [s]
+constexpr float kTurnSpeed = 0.3f;                   ///< share of the speed that is left in a turn
 
 template <typename T>
 const T* asset_at(const std::vector<T>& assets, std::uint32_t index) {

@@ -168,50 +168,6 @@ void touch_triangle(
     }
 }
 
-/// Calls visit(number, a, b, c) for triangles whose bounds overlap the box.
-template <typename Visit>
-void visit_triangles(const MeshBvh& bvh, const Bounds& box, Visit&& visit) {
-    if (bvh.nodes.empty()) {
-        return;
-    }
-    std::vector<std::uint32_t> open = {0};
-    while (!open.empty()) {
-        const std::uint32_t index = open.back();
-        open.pop_back();
-        if ((index & MeshBvh::kLeafBit) != 0) {
-            const MeshBvh::Leaf& leaf = bvh.leaves[index & ~MeshBvh::kLeafBit];
-            for (std::size_t t = 0; t < MeshBvh::kTriangles; ++t) {
-                if (leaf.triangle[t] == kNoTriangle) {
-                    continue;
-                }
-                Vec3 corners[3];
-                Bounds own;
-                for (int k = 0; k < 3; ++k) {
-                    const auto& corner = leaf.corner[k];
-                    corners[k] = {corner[0][t], corner[1][t], corner[2][t]};
-                    grow(own, corners[k]);
-                }
-                if (glm::all(glm::lessThanEqual(own.min, box.max))
-                    && glm::all(glm::lessThanEqual(box.min, own.max))) {
-                    visit(leaf.triangle[t], corners[0], corners[1], corners[2]);
-                }
-            }
-            continue;
-        }
-        const MeshBvh::Node& node = bvh.nodes[index];
-        for (std::size_t i = 0; i < MeshBvh::kChildren; ++i) {
-            bool overlaps = node.child[i] != MeshBvh::kNoChild;
-            for (int axis = 0; axis < 3; ++axis) {
-                overlaps = overlaps && node.bounds[0][axis][i] <= box.max[axis]
-                           && node.bounds[1][axis][i] >= box.min[axis];
-            }
-            if (overlaps) {
-                open.push_back(node.child[i]);
-            }
-        }
-    }
-}
-
 RagdollContact
 make_contact(std::size_t index, const RigidCapsule& body, const SurfaceTouch& touch) {
     RagdollContact contact;
