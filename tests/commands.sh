@@ -53,9 +53,10 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/model.obj"
 for name in low.obj high.obj; do
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >"$folder/$name"
 done
-for name in a.png b.png before.png after.png heights.png model.exr memorial.exr museum.exr; do
+for name in wall.png normals.png a.png b.png before.png after.png heights.png model.exr memorial.exr museum.exr; do
     "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
 done
+"$limn" bake block "$folder/wall.png" -o "$folder/wall.dds" >/dev/null || exit 1
 
 echo '{"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [-1, 0, 1]},
     {"image": "before.png", "to_light": [0, 1, 1]}]}' >"$folder/shots.json"

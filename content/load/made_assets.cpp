@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <chrono>
+#include <span>
 #include <type_traits>
 
 namespace limn {
@@ -95,6 +96,7 @@ void MadeAssets::begin_level() {
     const auto is_old = [this](const auto& item) { return item.second.used + kKeptLoads < load_; };
     std::erase_if(meshes_, is_old);
     std::erase_if(patterns_, is_old);
+    std::erase_if(blocks_, is_old);
 }
 
 MadeMesh
@@ -136,6 +138,25 @@ PatternMaps MadeAssets::pattern(const PatternKind& kind, const AnyComponent& par
     }
     found->second.used = load_;
     return found->second.value;
+}
+
+ImageData MadeAssets::blocks(const ImageData& image, const BlockOptions& options) {
+    const auto [found, is_new] = blocks_.try_emplace(fmt::format(
+        "blocks {} {} {} {} {} {:016x}", image.width, image.height,
+        static_cast<int>(options.format), static_cast<int>(options.kind), options.levels,
+        hash_bytes(std::as_bytes(std::span(image.pixels)))));
+    if (is_new) {
+        const std::string& key = found->first;
+        std::optional<ImageData> made = files_.find_image(key);
+        found->second.value = made ? *std::move(made)
+                                   : make_and_keep(
+                                       [&] { return encode_blocks(image, options); },
+                                       [&](const ImageData& blocks) { files_.keep(key, blocks); });
+    }
+    found->second.used = load_;
+    ImageData blocks = found->second.value;
+    blocks.name = image.name;
+    return blocks;
 }
 
 }  // namespace limn

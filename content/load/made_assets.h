@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/bake/block_image.h"
 #include "content/load/files/asset_cache.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns/patterns.h"
@@ -11,8 +12,9 @@
 
 namespace limn {
 
-// Cache of generated meshes and patterns, for levels that are reloaded, or loaded with a show on
-// and off. Keeps in memory what the last loads used, and in files what takes long to generate.
+// Cache of generated meshes and patterns, and of images in blocks, for levels that are reloaded, or
+// loaded with a show on and off. Keeps in memory what the last loads used, and in files what takes
+// long to generate.
 
 struct MadeMesh {
     MeshData data;
@@ -32,8 +34,13 @@ class MadeAssets {
     mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets);
     [[nodiscard]] PatternMaps pattern(const PatternKind& kind, const AnyComponent& parameters);
 
+    /// encode_blocks(), which takes about a second for a million texels.
+    [[nodiscard]] ImageData blocks(const ImageData& image, const BlockOptions& options);
+
     /// Number of assets kept.
-    [[nodiscard]] std::size_t size() const { return meshes_.size() + patterns_.size(); }
+    [[nodiscard]] std::size_t size() const {
+        return meshes_.size() + patterns_.size() + blocks_.size();
+    }
 
   private:
     static constexpr int kKeptLoads = 4;
@@ -45,6 +52,7 @@ class MadeAssets {
     AssetCache files_;
     std::map<std::string, Entry<MeshData>> meshes_;
     std::map<std::string, Entry<PatternMaps>> patterns_;
+    std::map<std::string, Entry<ImageData>> blocks_;
     int load_ = 0;
 };
 

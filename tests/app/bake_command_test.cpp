@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace limn::bake_command_test {
@@ -49,6 +50,50 @@ void check_fails(const TemporaryFolder& folder, const Words& more, int code, con
 }
 
 }  // namespace
+
+TEST_CASE(
+    "bake: block writes an image in blocks that info and view read"
+    * technique("engine.opt-texture")) {
+    const TemporaryFolder folder;
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < 32 * 20; ++i) {
+        const auto value = static_cast<std::uint8_t>(i % 32 * 8);
+        pixels.insert(pixels.end(), {value, 128, 255});
+    }
+    REQUIRE(write_png(folder.file("wall.png"), 32, 20, 3, pixels).ok());
+    for (const auto& [set, format, bytes] :
+         {std::tuple("kind=color", "BC7 (sRGB)", 148 + 944),
+          {"kind=data", "BC7", 148 + 944},
+          {"kind=normal", "BC5", 148 + 944},
+          {"levels=false", "BC7 (sRGB)", 148 + 640}}) {
+        const ProgramRun run = run_limn(
+            folder, {"bake", "block", folder.file("wall.png"), "-o", "wall.dds", "--set", set});
+        CAPTURE(run.err);
+        REQUIRE(run.exit_code == 0);
+        CHECK(count_lines(run.out) == 1);
+        CHECK(std::filesystem::file_size(folder.file("wall.dds")) == bytes);
+        const ProgramRun info = run_limn(folder, {"info", "wall.dds"});
+        CHECK(info.exit_code == 0);
+        CHECK(info.out.find("32 x 20 pixels, " + std::string(format) + ", ") != std::string::npos);
+    }
+    CHECK(run_limn(folder, {"view", "wall.dds", "-o", "shown.png"}).exit_code == 0);
+    const auto shown = load_image(folder.file("shown.png"), true);
+    REQUIRE(shown.ok());
+    CHECK(shown->width == 32);
+    for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
+        CHECK(std::abs(shown->pixels[4 * i] - pixels[3 * i]) <= 4);
+    }
+
+    ExrImage floats = {.width = 1, .height = 1};
+    add_layer(floats, "", "RGB", std::vector<float>{1, 1, 1}, false);
+    REQUIRE(write_exr(folder.file("light.exr"), floats).ok());
+    const ProgramRun refused = run_limn(folder, {"bake", "block", "light.exr", "-o", "light.dds"});
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.err.find("expected 8 bits") != std::string::npos);
+    CHECK(count_lines(refused.err) == 1);
+    const ProgramRun named = run_limn(folder, {"bake", "block", "wall.png", "-o", "wall.png"});
+    CHECK(named.err.find("ending in .dds") != std::string::npos);
+}
 
 TEST_CASE(
     "bake: photometric writes the normals and the reflectance of the photographed surface"

@@ -1,7 +1,11 @@
+#include "content/bake/block_image.h"
+#include "content/load/files/dds_file.h"
 #include "content/load/gltf/gltf_load.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -123,6 +127,47 @@ TEST_CASE("gltf extensions: a texture in WebP is read, and preferred to its fall
         CHECK(scene->materials[0].base_color_texture.image.index == 0);
         CHECK(scene->images[0].srgb);
         CHECK(scene->images[0].pixels == pixels);
+    }
+}
+
+TEST_CASE(
+    "gltf extensions: a texture in DDS is preferred, and its fallback used if it is of another kind"
+    * technique("engine.opt-texture")) {
+    ImageData gray;
+    gray.width = gray.height = 4;
+    gray.pixels.assign(64, 128);
+    std::vector<std::byte> dds = encode_dds(encode_blocks(gray, {}));
+    const std::size_t size = dds.size();
+    for (const bool known : {true, false}) {
+        CAPTURE(known);
+        if (!known) {
+            dds[128] = std::byte{71};  // BC1
+        }
+        std::vector<std::byte> binary = square_binary();
+        append_values(binary, dds);
+        std::string json = replace_once(
+            replace_once(
+                kSquareJson, R"("byteOffset": 68, "byteLength": 24})",
+                fmt::format(
+                    R"("byteOffset": 68, "byteLength": 24}},
+                       {{"buffer": 0, "byteOffset": 92, "byteLength": {}}})",
+                    size)),
+            R"("byteLength": 92)", fmt::format(R"("byteLength": {})", 92 + size));
+        json = replace_once(
+            json, R"({"name": "paint"}])",
+            R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+               "images": [{"uri": "data:image/png;base64,)"
+            R"(iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="},
+               {"bufferView": 4}],
+               "textures": [{"source": 0, "extensions": {"MSFT_texture_dds": {"source": 1}}}],
+               "extensionsUsed": ["MSFT_texture_dds"])");
+        const Result<GltfScene> scene = parse_square(json, binary);
+        REQUIRE_MESSAGE(scene.ok(), (scene ? "" : scene.error().message));
+        CHECK(scene->warnings.empty());
+        REQUIRE(scene->images.size() == 1);
+        CHECK(scene->images[0].width == (known ? 4 : 1));
+        CHECK(scene->images[0].format == (known ? PixelFormat::Bc7 : PixelFormat::Rgba8));
+        CHECK(scene->images[0].srgb);
     }
 }
 

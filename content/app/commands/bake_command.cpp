@@ -1,5 +1,6 @@
 #include "content/app/commands/bake_command.h"
 
+#include "content/app/commands/bake_block.h"
 #include "content/app/commands/bake_detail.h"
 #include "content/app/commands/bake_ghosts.h"
 #include "content/app/commands/bake_motion.h"
@@ -140,6 +141,8 @@ Status bake_furrows(const BakeOptions& options) {
 
 constexpr BakeKind kKinds[] = {
     {"ao", "ambient occlusion of a height map or a mesh", bake_occlusion_map},
+    {"block", "an image in blocks that stay compressed on the GPU, with mip levels", bake_block,
+     ".dds"},
     {"cone", "relief map with relaxed cones, for marching in few steps", bake_cone_map},
     {"curves", "plot of the angles of a joint over time", bake_curves, ".svg"},
     {"detail", "normals and occlusion of a detailed mesh for one with few triangles",

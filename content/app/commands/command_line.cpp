@@ -397,11 +397,14 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     app->add_option("body", options.body, "retarget, and motion of .trc: a file with a skeleton")
         ->type_name("BODY");
     add_parsed(
-        *app, "-o,--out", "NAME.png or NAME.exr; NAME.glb, NAME.bvh or NAME.svg of motion",
+        *app, "-o,--out",
+        "NAME.png or NAME.exr; NAME.dds of block; NAME.glb, NAME.bvh or NAME.svg of motion",
         options.out,
         [](const std::string& text) {
-            if (text.ends_with(".glb") || text.ends_with(".bvh") || text.ends_with(".svg")) {
-                return Result<std::string>(text);
+            for (const char* const ending : {".glb", ".bvh", ".svg", ".dds"}) {
+                if (text.ends_with(ending)) {
+                    return Result<std::string>(text);
+                }
             }
             const Result<ImageFileKind> kind = image_file_kind(text);
             return kind ? Result<std::string>(text) : kind.error();
@@ -435,6 +438,9 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "  \"images\": {{\"wall\": {{\"file\": \"wall.png\", \"srgb\": false}}}},\n"
         "  \"materials\": {{\"wall\": {{\"detail\": \"relief\", \"relief_texture\": "
         "{{\"image\": \"wall\"}}}}}}\n"
+        "block takes an image of 8 bits and writes blocks with mip levels. Its recipe: kind "
+        "(color, normal,\n"
+        "data), format (bc5 of normals, else bc7), levels.\n"
         "detail writes NAME_normal, NAME_height and NAME_occlusion of the mesh --high for the "
         "texture\n"
         "coordinates of IN, and NAME.glb, which is IN with these maps; with --set relief=true "
@@ -481,6 +487,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "  limn bake cone model.glb -o cones.png --set face=top --set size=64\n"
         "  limn bake detail low.obj --high high.obj -o statue.png --set distance=0.05\n"
         "  limn bake photometric shots.json -o face.png\n"
+        "  limn bake block wall.png -o wall.dds\n"
         "  limn bake strain_model poses.json -o wrinkles.exr\n"
         "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
         "  limn bake furrows model.glb -o skin.exr --set projection=planar --set preset=hand",

@@ -4,11 +4,14 @@
 #include "content/app/commands/trial_file.h"
 #include "content/game/game.h"
 #include "content/game/wrinkle_trial_system.h"
+#include "content/load/files/atomic_file.h"
+#include "content/load/files/dds_file.h"
 #include "content/load/files/exr_file.h"
 #include "content/load/files/image_load.h"
 #include "content/load/level/level_hints.h"
 #include "content/load/scene_load.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/image_blocks.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/particles.h"
@@ -276,7 +279,9 @@ void print_assets(
     fmt::print("{}\n", counted(assets.images.size(), "image"));
     for (std::size_t i = 0; i < std::min(assets.images.size(), kMaxLines); ++i) {
         const ImageData& image = assets.images[i];
-        fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
+        fmt::print(
+            "    {:>5} x {:<5}  {:<7}  {}\n", image.width, image.height, format_name(image.format),
+            image.name);
     }
     print_rest(assets.images.size());
 
@@ -392,15 +397,27 @@ Status print_exr(const std::string& file) {
     return Done{};
 }
 
+/// "BC7 (sRGB), 10 mip levels, 341.5 KiB: 25.0 % of RGBA8"
+std::string describe_blocks(const ImageData& image) {
+    ImageData unpacked = {.name = {}, .width = image.width, .height = image.height, .pixels = {}};
+    unpacked.mip_levels = image.mip_levels;
+    const auto bytes = static_cast<double>(image_bytes(image));
+    return fmt::format(
+        "{}{}, {}, {:.1f} KiB: {:.1f} % of RGBA8", format_name(image.format),
+        image.srgb ? " (sRGB)" : "",
+        counted(static_cast<std::size_t>(image.mip_levels), "mip level"), bytes / 1024,
+        100 * bytes / static_cast<double>(image_bytes(unpacked)));
+}
+
 Status print_image(const std::string& file) {
-    const Result<ImageData> image = load_image(file, true);
-    if (!image) {
-        return image.error();
-    }
+    const std::vector<std::byte> bytes = LIMN_TRY(read_file(file));
+    const ImageData image = LIMN_TRY(
+        is_dds_file(bytes) ? decode_dds(bytes, file, {}) : decode_image(bytes, file, true));
     static constexpr const char* kFormats[] = {"8 bit", "half", "float"};
     fmt::print(
-        "{}\n{} x {} pixels, {}\n", file, image->width, image->height,
-        kFormats[static_cast<std::size_t>(image->format)]);
+        "{}\n{} x {} pixels, {}\n", file, image.width, image.height,
+        is_in_blocks(image.format) ? describe_blocks(image)
+                                   : kFormats[static_cast<std::size_t>(image.format)]);
     return Done{};
 }
 
@@ -421,8 +438,8 @@ Status run_info(const std::string& file) {
     if (extension == ".csv") {
         return print_trials(file);
     }
-    static constexpr std::array<std::string_view, 6> kImages = {".png", ".jpg",  ".jpeg",
-                                                                ".bmp", ".webp", ".hdr"};
+    static constexpr std::array<std::string_view, 7> kImages = {".png",  ".jpg", ".jpeg", ".bmp",
+                                                                ".webp", ".hdr", ".dds"};
     if (std::find(kImages.begin(), kImages.end(), extension) != kImages.end()) {
         return print_image(file);
     }

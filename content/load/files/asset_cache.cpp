@@ -283,12 +283,20 @@ std::optional<MeshData> AssetCache::find_mesh(std::string_view key) const {
     return read_asset<MeshData>(folder_, key, visit_mesh<CacheReader, MeshData>);
 }
 
+std::optional<ImageData> AssetCache::find_image(std::string_view key) const {
+    return read_asset<ImageData>(folder_, key, visit_image<CacheReader, ImageData>);
+}
+
 void AssetCache::keep(std::string_view key, const PatternMaps& maps) const {
     write_asset(folder_, max_bytes_, key, maps, visit_maps<Writer, const PatternMaps>);
 }
 
 void AssetCache::keep(std::string_view key, const MeshData& mesh) const {
     write_asset(folder_, max_bytes_, key, mesh, visit_mesh<Writer, const MeshData>);
+}
+
+void AssetCache::keep(std::string_view key, const ImageData& image) const {
+    write_asset(folder_, max_bytes_, key, image, visit_image<Writer, const ImageData>);
 }
 
 }  // namespace limn

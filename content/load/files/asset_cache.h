@@ -31,8 +31,10 @@ class AssetCache {
 
     [[nodiscard]] std::optional<PatternMaps> find_pattern(std::string_view key) const;
     [[nodiscard]] std::optional<MeshData> find_mesh(std::string_view key) const;
+    [[nodiscard]] std::optional<ImageData> find_image(std::string_view key) const;
     void keep(std::string_view key, const PatternMaps& maps) const;
     void keep(std::string_view key, const MeshData& mesh) const;
+    void keep(std::string_view key, const ImageData& image) const;
 
   private:
     std::string folder_;

@@ -48,8 +48,8 @@ bool is_image_name(const std::string& path) {
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
         return static_cast<char>(std::tolower(c));
     });
-    constexpr std::array<std::string_view, 7> kImages = {".png", ".exr",  ".jpg", ".jpeg",
-                                                         ".bmp", ".webp", ".hdr"};
+    constexpr std::array<std::string_view, 8> kImages = {".png", ".exr",  ".jpg", ".jpeg",
+                                                         ".bmp", ".webp", ".hdr", ".dds"};
     return std::ranges::find(kImages, extension) != kImages.end();
 }
 

@@ -2,10 +2,12 @@
 
 #include "content/codecs/image_codec.h"
 #include "content/load/files/atomic_file.h"
+#include "content/load/files/dds_file.h"
 #include "content/load/files/exr_file.h"
 #include "content/load/files/png_file.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
+#include "ecs/components/image_blocks.h"
 #include "ecs/components/surface.h"
 
 #include <algorithm>
@@ -25,8 +27,13 @@ namespace {
 std::string sniff_format(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr std::pair<std::string_view, const char*> kMagic[] = {
-        {"\x89PNG\r\n\x1a\n", "png"}, {"\xff\xd8\xff", "jpeg"}, {"BM", "bmp"},
-        {"#?RADIANCE", "hdr"},        {"#?RGBE", "hdr"},        {"\x76\x2f\x31\x01", "exr"},
+        {"\x89PNG\r\n\x1a\n", "png"},
+        {"\xff\xd8\xff", "jpeg"},
+        {"BM", "bmp"},
+        {"#?RADIANCE", "hdr"},
+        {"#?RGBE", "hdr"},
+        {"\x76\x2f\x31\x01", "exr"},
+        {"DDS ", "dds"},
     };
     for (const auto& [magic, format] : kMagic) {
         if (text.starts_with(magic)) {
@@ -76,12 +83,17 @@ Result<ImageData> decode(
     }
     if (format.empty()) {
         return fail(
-            "{}: found {} bytes in an unknown format, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
-            "image",
+            "{}: found {} bytes in an unknown format, expected a PNG, JPEG, BMP, WebP, HDR, EXR or "
+            "DDS image",
             location, bytes.size());
     }
     if (format == "png") {
         ImageData image = LIMN_TRY(decode_png(bytes, location, limits));
+        image.srgb = srgb;
+        return image;
+    }
+    if (format == "dds") {
+        ImageData image = decoded_level(LIMN_TRY(decode_dds(bytes, location, limits)));
         image.srgb = srgb;
         return image;
     }

@@ -13,9 +13,10 @@ namespace limn {
 
 struct ImageData;
 
-// Loads untrusted images: PNG through png_file.h, EXR through exr_file.h, JPEG, BMP, WebP and
-// Radiance HDR through OpenImageIO (image_codec.h); the format is detected from the first bytes,
-// never from the name. The header is checked against limits before pixels are allocated, and a
+// Loads untrusted images: PNG through png_file.h, EXR through exr_file.h, the first level of DDS
+// through dds_file.h (texture_load.h keeps the blocks of textures), JPEG, BMP, WebP and Radiance
+// HDR through OpenImageIO (image_codec.h); the format is detected from the first bytes, never from
+// the name. The header is checked against limits before pixels are allocated, and a
 // truncated file is an error. Gray becomes RGB, a missing alpha is 1, alpha is not premultiplied. 8
 // and 16 bit integers become Rgba8, half Rgba16F, all other floats Rgba32F.
 

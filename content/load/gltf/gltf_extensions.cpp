@@ -33,6 +33,7 @@ constexpr std::string_view kReadExtensions[] = {
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
+    "MSFT_texture_dds",
 };
 
 /// Prefixes of extensions that only affect looks: without them every part is still in the right
@@ -51,7 +52,6 @@ constexpr std::pair<std::string_view, std::string_view> kExtensionHints[] = {
     {"KHR_texture_basisu",
      "convert its textures with `gltf-transform ktxdecompress in.glb out.glb`"},
     {"EXT_texture_avif", "convert its textures with `gltf-transform png in.glb out.glb`"},
-    {"MSFT_texture_dds", "export its textures as PNG"},
     {"KHR_techniques_webgl", "export it with metallic-roughness materials"},
 };
 

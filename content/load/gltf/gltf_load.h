@@ -22,12 +22,12 @@ namespace limn {
 // KHR_materials_transmission without its texture, KHR_materials_ior and KHR_materials_volume of
 // transmissive materials, KHR_materials_variants, KHR_materials_pbrSpecularGlossiness
 // (gltf_glossiness.h), KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing,
-// EXT_meshopt_compression, EXT_texture_webp, points and lines (gltf_strokes.h), skeletons, skins
-// with any number of joints per vertex, morph targets with their action units, named regions of
-// vertices (surface.h), animation clips, our components in extras.limn of a node, and relief in
-// those of a material (gltf_material_extras.h). Ignored with a warning: lights of unknown type,
-// bytes after a GLB, textures in unsupported image formats, morph targets of texture coordinates
-// and colors, other extensions unless they are required.
+// EXT_meshopt_compression, EXT_texture_webp, MSFT_texture_dds (BC5 and BC7), points and lines
+// (gltf_strokes.h), skeletons, skins with any number of joints per vertex, morph targets with their
+// action units, named regions of vertices (surface.h), animation clips, our components in
+// extras.limn of a node, and relief in those of a material (gltf_material_extras.h). Ignored with a
+// warning: lights of unknown type, bytes after a GLB, textures in unsupported image formats, morph
+// targets of texture coordinates and colors, other extensions unless they are required.
 //
 // A bad part costs that part and a warning (load_warnings.h): an image its textures, a channel its
 // movement, a skin or an attribute itself; factors are clamped; bad normals and tangents are

@@ -1,5 +1,5 @@
 #include "content/load/files/file_uri.h"
-#include "content/load/files/image_load.h"
+#include "content/load/files/texture_load.h"
 #include "content/load/gltf/gltf_document.h"
 #include "content/load/gltf/gltf_glossiness.h"
 #include "content/load/gltf/gltf_layers.h"
@@ -22,6 +22,7 @@ namespace {
 struct UsedImage {
     std::size_t source = 0;  ///< index in the file
     bool srgb = false;
+    int fallback = -1;  ///< index of another image, where this one cannot be read
 };
 
 constexpr float kIndex = 1.5f;  ///< of refraction, by default
@@ -57,11 +58,16 @@ Minify to_minify(std::int32_t filter) {
     }
 }
 
-/// The image of a texture in any supported format, WebP first; -1 if there is none.
+/// The image of a texture in any supported format, DDS and WebP first; -1 if there is none.
 int image_of(const tinygltf::Texture& texture) {
-    const tinygltf::Value& webp =
-        member_of(extension_of(texture.extensions, "EXT_texture_webp"), "source");
-    return webp.IsNumber() ? webp.GetNumberAsInt() : texture.source;
+    for (const char* const extension : {"MSFT_texture_dds", "EXT_texture_webp"}) {
+        const tinygltf::Value& source =
+            member_of(extension_of(texture.extensions, extension), "source");
+        if (source.IsNumber()) {
+            return source.GetNumberAsInt();
+        }
+    }
+    return texture.source;
 }
 
 /// A textureInfo of an extension; tinygltf knows only those of the standard.
@@ -244,7 +250,8 @@ class MaterialBuilder {
             warn(fmt::format("textures[{}] has no image in a supported format", info.index));
             return result;
         }
-        result.image.index = use_image(static_cast<std::size_t>(source), srgb);
+        const int fallback = texture.source != source ? texture.source : -1;
+        result.image.index = use_image(static_cast<std::size_t>(source), srgb, fallback);
         if (texture.sampler >= 0) {
             const tinygltf::Sampler& sampler = item_at(document_.model.samplers, texture.sampler);
             result.wrap_u = to_wrap(sampler.wrapS);
@@ -269,11 +276,11 @@ class MaterialBuilder {
         document_.warnings.push_back(fmt::format("{}: {}", where_, what));
     }
 
-    std::uint32_t use_image(std::size_t source, bool srgb) {
+    std::uint32_t use_image(std::size_t source, bool srgb, int fallback) {
         std::uint32_t& number = number_[2 * source + (srgb ? 1 : 0)];
         if (number == kNoAsset) {
             number = static_cast<std::uint32_t>(used_.size());
-            used_.push_back({source, srgb});
+            used_.push_back({source, srgb, fallback});
         }
         return number;
     }
@@ -306,11 +313,24 @@ load_used(const GltfDocument& document, const UsedImage& used, const ImageLimits
     } else {
         bytes = LIMN_TRY(view_bytes(document, source.view));
     }
-    ImageData image = LIMN_TRY(decode_image(bytes, where, used.srgb, limits));
+    ImageData image = LIMN_TRY(decode_texture(bytes, where, used.srgb, limits));
     const std::string& name = document.model.images[used.source].name;
     image.name = !name.empty() ? name
                  : source.uri  ? source.uri->substr(0, 200)
                                : fmt::format("image {}", used.source);
+    return image;
+}
+
+/// DDS files often have formats that we do not read, and a PNG beside them.
+Result<ImageData> load_used_or_fallback(
+    const GltfDocument& document, const UsedImage& used, const ImageLimits& limits) {
+    Result<ImageData> image = load_used(document, used, limits);
+    if (!image && used.fallback >= 0) {
+        const auto source = static_cast<std::size_t>(used.fallback);
+        if (Result<ImageData> other = load_used(document, {source, used.srgb}, limits)) {
+            return other;
+        }
+    }
     return image;
 }
 
@@ -333,7 +353,7 @@ void load_images(GltfDocument& document, const std::vector<UsedImage>& used, Glt
         std::vector<std::optional<Result<ImageData>>> images(count);
         parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                images[i] = load_used(document, used[first + i], limits);
+                images[i] = load_used_or_fallback(document, used[first + i], limits);
             }
         });
         for (std::optional<Result<ImageData>>& image : images) {

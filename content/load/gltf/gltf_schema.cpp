@@ -48,6 +48,7 @@ images[]: name text; uri text; bufferView index bufferViews
 samplers[]: magFilter size 0 65535; minFilter size 0 65535; wrapS size 0 65535; wrapT size 0 65535
 textures[]: source index images; sampler index samplers
 textures[].extensions.EXT_texture_webp: source index images
+textures[].extensions.MSFT_texture_dds: source index images
 materials[]: name text; alphaMode text OPAQUE MASK BLEND; alphaCutoff factor 0 1e9
 materials[]: doubleSided bool; emissiveFactor factor3 0 1e9
 materials[].extensions.KHR_materials_transmission: transmissionFactor factor 0 1

@@ -3,6 +3,7 @@
 #include "content/load/files/json_document.h"
 #include "content/load/files/png_file.h"
 #include "ecs/base/text.h"
+#include "ecs/components/image_blocks.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +48,10 @@ int gltf_minify(Minify minify) {
 }  // namespace
 
 Status append_images(tinygltf::Model& model, const GltfScene& scene) {
-    for (const ImageData& source : scene.images) {
+    for (const ImageData& image_of_scene : scene.images) {
+        const bool in_blocks = is_in_blocks(image_of_scene.format);
+        const ImageData decoded = in_blocks ? decoded_level(image_of_scene) : ImageData{};
+        const ImageData& source = in_blocks ? decoded : image_of_scene;
         if (source.format != PixelFormat::Rgba8) {
             return fail(
                 "{}: found floats in the image {}, expected 8 bits: glTF has no others", scene.name,

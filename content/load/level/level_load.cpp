@@ -3,6 +3,7 @@
 #include "content/load/files/brdf_file.h"
 #include "content/load/files/error_list.h"
 #include "content/load/files/file_uri.h"
+#include "content/load/files/texture_load.h"
 #include "content/load/level/component_json.h"
 #include "content/load/level/level_events.h"
 #include "content/load/level/level_hints.h"
@@ -12,6 +13,7 @@
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/image_blocks.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
@@ -253,19 +255,25 @@ class LevelParser {
         if ((make == nullptr) == (file == nullptr)) {
             return unexpected(json, at, "an object with either \"make\" or \"file\"");
         }
+        const JsonValue* const compress = json.find("compress");
+        if (compress != nullptr && compress->kind != JsonKind::Bool) {
+            return unexpected(*compress, at, "true or false");
+        }
         LevelImage image;
         image.name = member.key;
         image.at = json.at;
+        image.compress = compress != nullptr && compress->truth;
         image.index = static_cast<std::uint32_t>(level_.assets.images.size());
         if (file != nullptr) {
             const JsonValue* const srgb = json.find("srgb");
-            const bool good = file->kind == JsonKind::String
-                              && (srgb == nullptr || srgb->kind == JsonKind::Bool)
-                              && json.members.size() == (srgb == nullptr ? 1u : 2u);
+            const bool good =
+                file->kind == JsonKind::String && (srgb == nullptr || srgb->kind == JsonKind::Bool)
+                && json.members.size()
+                       == 1u + (srgb != nullptr ? 1u : 0u) + (compress != nullptr ? 1u : 0u);
             if (!good) {
                 return error_at(
                     at, json.at, "other keys or types",
-                    "{\"file\": \"path\", \"srgb\": true or false}");
+                    "{\"file\": \"path\", \"srgb\": true or false, \"compress\": true or false}");
             }
             image.file = file->text;
             image.srgb = srgb == nullptr || srgb->truth;
@@ -279,8 +287,8 @@ class LevelParser {
                     *make, at,
                     kind_names(pattern_kinds()) + kind_suggestion(pattern_kinds(), make->text));
             }
-            image.parameters = LIMN_TRY(
-                read_component(without(json, {"make"}), *image.pattern->parameters, at, {}));
+            image.parameters = LIMN_TRY(read_component(
+                without(json, {"make", "compress"}), *image.pattern->parameters, at, {}));
             patterns_[member.key] = image.index;
             for (const PatternMap& map : pattern_maps(*image.pattern)) {
                 const std::string name = member.key + map.suffix;
@@ -632,8 +640,8 @@ Status load_image_file(
     ImageLimits image_limits = limits.gltf.image;
     image_limits.max_pixels =
         std::min(image_limits.max_pixels, static_cast<std::int64_t>(pixels_left));
-    ImageData data = LIMN_TRY(
-        decode_image(bytes, fmt::format("{}: {}", location, image.file), image.srgb, image_limits));
+    ImageData data = LIMN_TRY(decode_texture(
+        bytes, fmt::format("{}: {}", location, image.file), image.srgb, image_limits));
     pixels_left -= static_cast<std::uint64_t>(data.width) * static_cast<std::uint64_t>(data.height);
     if (const std::size_t bad = replace_non_finite(data); bad > 0) {
         log_warn(
@@ -643,6 +651,54 @@ Status load_image_file(
     data.name = image.name;
     level.assets.images[image.index] = std::move(data);
     return Done{};
+}
+
+/// How often materials of the level use an image.
+struct ImageUse {
+    int all = 0;
+    int normals = 0;   ///< of tangent space, whose z >= 0 follows from x and y
+    int wrinkles = 0;  ///< read by systems, too
+};
+
+ImageUse use_of(std::vector<Material>& materials, ImageId image) {
+    ImageUse use;
+    for (Material& m : materials) {
+        for_each_asset(
+            component_info<Material>().fields, &m,
+            [&](std::string_view kind, const std::uint32_t& index) {
+                use.all += kind == asset_kind<ImageId> && index == image.index ? 1 : 0;
+            });
+        for (const TextureSlot* slot :
+             {&m.normal_texture, &m.detail_texture, &m.clearcoat_normal_texture}) {
+            const bool in_mesh_space =
+                slot == &m.normal_texture && m.detail == SurfaceDetail::ObjectNormal;
+            use.normals += slot->image == image && !in_mesh_space ? 1 : 0;
+        }
+        use.wrinkles += m.wrinkle_texture.image == image ? 1 : 0;
+    }
+    return use;
+}
+
+/// The images that `image` has become, in blocks.
+void compress_images(Level& level, const LevelImage& image, MadeAssets& made) {
+    const std::size_t count = image.pattern != nullptr ? pattern_maps(*image.pattern).size() : 1;
+    for (std::size_t i = image.index; i < image.index + count; ++i) {
+        ImageData& data = level.assets.images[i];
+        const ImageUse use = use_of(level.assets.materials, {static_cast<std::uint32_t>(i)});
+        if (data.format != PixelFormat::Rgba8 || use.wrinkles > 0) {
+            log_warn(
+                "{}: {} is not compressed: found {}, expected 8 bits that only materials read",
+                location_of(level, image.at, "images." + image.name), data.name,
+                use.wrinkles > 0 ? "the wrinkles of a material" : format_name(data.format));
+            continue;
+        }
+        const bool normals = use.normals > 0 && use.normals == use.all;
+        data = made.blocks(
+            data, {.format = normals ? PixelFormat::Bc5 : PixelFormat::Bc7,
+                   .kind = normals     ? TexelKind::Normal
+                           : data.srgb ? TexelKind::Color
+                                       : TexelKind::Data});
+    }
 }
 
 /// Base color and lobes of a material.
@@ -717,9 +773,13 @@ Status load_level_assets(
     std::uint64_t pixels_left = limits.max_pixels;
     ErrorList errors(level.file);
     for (const LevelImage& image : level.images) {
-        errors.keep(
-            image.pattern != nullptr ? make_pattern(level, image, makes, pixels_left)
-                                     : load_image_file(level, image, folder, limits, pixels_left));
+        const Status loaded = image.pattern != nullptr
+                                  ? make_pattern(level, image, makes, pixels_left)
+                                  : load_image_file(level, image, folder, limits, pixels_left);
+        errors.keep(loaded);
+        if (loaded && image.compress) {
+            compress_images(level, image, makes);
+        }
     }
     for (const LevelBrdf& brdf : level.brdfs) {
         errors.keep(load_brdf_file(level, brdf, folder, limits));

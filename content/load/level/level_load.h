@@ -39,7 +39,9 @@ class World;
 //       "images": {                             // files are in the level's folder or below it
 //         // the three images floor.base_color, floor.normal, floor.orm
 //         "floor": {"make": "marble", "size": 512},
-//         "leaf": {"file": "leaf.png"}          // color; data has "srgb": false
+//         "leaf": {"file": "leaf.png"},         // color; data has "srgb": false
+//         // in blocks: BC5 for the tangent-space normals of a material, BC7 for all else
+//         "wall": {"make": "bricks", "compress": true}
 //       },
 //       "materials": {                          // fields of Material, and:
 //         "gold": {"base_color": "#ffd27a", "metalness": 1, "roughness": 0.2},
@@ -114,6 +116,7 @@ struct LevelImage {
     AnyComponent parameters;
     std::string file;  ///< relative to the level
     bool srgb = true;
+    bool compress = false;    ///< to blocks, with mip levels
     std::uint32_t index = 0;  ///< of the (first) image in Level::assets
 };
 

@@ -228,9 +228,9 @@ Members properties_of() {
     return properties_of(component_info<T>().fields, component_info<T>().defaults);
 }
 
-/// {"make": kind, parameters ...} for every kind of a list.
+/// {"make": kind, parameters ..., `more`} for every kind of a list.
 template <typename Kinds>
-std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
+std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds, const Members& more = {}) {
     std::vector<JsonValue> schemas;
     for (const auto& kind : kinds) {
         Members properties = {schema_member("make", constant(kind.name))};
@@ -238,6 +238,7 @@ std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
              properties_of(kind.parameters->fields, kind.parameters->defaults)) {
             properties.push_back(std::move(field));
         }
+        properties.insert(properties.end(), more.begin(), more.end());
         JsonValue schema = closed_object(std::move(properties), {schema_text("make")});
         schema.members.push_back(schema_member("description", schema_text(kind.doc)));
         schemas.push_back(std::move(schema));
@@ -246,14 +247,22 @@ std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
 }
 
 JsonValue schema_of_images() {
-    std::vector<JsonValue> schemas = schemas_of_kinds(pattern_kinds());
+    const JsonMember compress = schema_member(
+        "compress",
+        described(
+            of_type("boolean"),
+            "stored in blocks: BC5 for the tangent-space normals of a material, BC7 for all else",
+            json_of(false)));
+    std::vector<JsonValue> schemas = schemas_of_kinds(pattern_kinds(), {compress});
     schemas.push_back(closed_object(
         {schema_member(
-             "file", described(of_type("string"), "a PNG, JPEG, EXR, HDR ... beside the level")),
+             "file",
+             described(of_type("string"), "a PNG, JPEG, EXR, HDR, DDS ... beside the level")),
          schema_member(
              "srgb", described(
                          of_type("boolean"), "true for colors; false for normals and masks",
-                         json_of(true)))},
+                         json_of(true))),
+         compress},
         {schema_text("file")}));
     return map_of(any_of(std::move(schemas)));
 }
