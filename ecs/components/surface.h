@@ -294,6 +294,7 @@ struct Material {
     TextureSlot wrinkle_texture = {};
     TextureSlot detail_texture = {};
     TextureSlot thickness_texture = {};
+    TextureSlot transmission_texture = {};
     TextureSlot relief_texture = {};
     TextureSlot clearcoat_texture = {};
     TextureSlot clearcoat_roughness_texture = {};
@@ -446,6 +447,7 @@ LIMN_FIELDS(Material) {
         "tangent-space normals, green up, of finer relief, added to normal_texture: give it a "
         "scale to tile it");
     LIMN_FIELD(thickness_texture, "green = fraction of the thickness");
+    LIMN_FIELD(transmission_texture, "red = factor of transmission");
     LIMN_FIELD(
         relief_texture,
         "replaces normal_texture where `detail` needs it: red, green = tangent-space normal, alpha "

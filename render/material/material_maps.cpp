@@ -40,6 +40,7 @@ constexpr MapSlot kSlots[] = {
     {layout::kIridescenceThicknessSlot, "IRIDESCENCE_THICKNESS_MAP",
      &Material::iridescence_thickness_texture, false, kFilmLayer},
     {layout::kNormalSpreadSlot, "NORMAL_SPREAD_MAP", &Material::normal_texture, false},
+    {layout::kTransmissionSlot, "TRANSMISSION_MAP", &Material::transmission_texture, false},
 };
 
 constexpr bool numbers_fit() {

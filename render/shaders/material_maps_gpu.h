@@ -28,6 +28,7 @@ const uint kAnisotropySlot = 16u;           // rg: direction along tangent and b
 const uint kIridescenceSlot = 17u;          // r
 const uint kIridescenceThicknessSlot = 18u; // g
 const uint kNormalSpreadSlot = 19u;         // of the normal map: render/material/normal_mips.h
+const uint kTransmissionSlot = 20u;         // r
 
 const uint kMaxMapSlots = 24u;
 

@@ -109,13 +109,16 @@ TEST_CASE("gltf layers: colors are sRGB, other maps are data, each with its tran
         {"specular", {"specularColorTexture", &Material::specular_tint_texture}},
         {"anisotropy", {"anisotropyTexture", &Material::anisotropy_texture}},
         {"iridescence", {"iridescenceTexture", &Material::iridescence_texture}},
-        {"iridescence", {"iridescenceThicknessTexture", &Material::iridescence_thickness_texture}}};
+        {"iridescence", {"iridescenceThicknessTexture", &Material::iridescence_thickness_texture}},
+        {"transmission", {"transmissionTexture", &Material::transmission_texture}}};
     for (const auto& [extension, map] : maps) {
         const std::string member = map.first;
         CAPTURE(member);
         std::string json = replace_once(
             kSquareJson, R"([{"name": "paint"}])",
-            R"([{"extensions": {"KHR_materials_)" + std::string(extension) + R"(": {")" + member
+            R"([{"extensions": {"KHR_materials_)" + std::string(extension) + R"(": {)"
+                + (extension == std::string("transmission") ? R"("transmissionFactor": 1, )" : "")
+                + "\"" + member
                 + R"(": {"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform":
                 {"scale": [2, 3]}}}}}}], "textures": [{"source": 0}], "images": [{"uri": )"
                 + kImage + "}]");

@@ -321,11 +321,6 @@ TEST_CASE("gltf: clear media have their index, thickness and absorption; opaque 
     CHECK(glass(clear + R"(, "KHR_materials_ior": {"ior": 0})").refractive_index == 1);
     CHECK(glass(R"("KHR_materials_transmission": {})").transmission == 0);
     CHECK(glass(R"("KHR_materials_ior": {"ior": 2.4})").refractive_index == 2.4f);
-    CHECK(
-        glass(R"("KHR_materials_transmission":
-                {"transmissionFactor": 1, "transmissionTexture": {"index": 0}})")
-            .transmission
-        == 0);
 }
 
 TEST_CASE("gltf: tangents follow the texture coordinates of the normal map, also those of its "

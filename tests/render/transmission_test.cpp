@@ -302,4 +302,38 @@ TEST_CASE_FIXTURE(GlassScene, "transmission: the near side of a double-sided bal
     CHECK(largest_difference(radiance(front()), want) < 0.01f);
 }
 
+TEST_CASE_FIXTURE(
+    GlassScene,
+    "transmission: a map is a factor: where it is 0 the surface is opaque, as without") {
+    add_edge(-1, 3);  // white
+    Material half_clear = {.base_color = {0.5f, 0.25f, 1, 1}, .roughness = 0, .transmission = 1};
+    half_clear.transmission_texture = {
+        .image = add(ImageData{
+            .name = "transmission",
+            .width = 2,
+            .height = 1,
+            .pixels = {0, 255, 255, 255, 255, 0, 0, 255}}),
+        .wrap_u = Wrap::Clamp,
+        .nearest = true};
+    shine(PointLight{.intensity = 4, .radius = 0}, at({0, 0.5f, 1.5f}));
+    const Entity pane = add_pane(half_clear);
+    const gpu::FloatImage image = radiance(front());
+    world.destroy(pane);
+    Material whole = half_clear;
+    whole.transmission_texture = {};
+    const Entity clear = add_pane(whole);
+    const gpu::FloatImage all_clear = radiance(front());
+    world.destroy(clear);
+    whole.transmission = 0;
+    add_pane(whole);
+    const gpu::FloatImage opaque = radiance(front());
+    REQUIRE(largest_difference(all_clear, opaque) > 0.1f);
+    for (int y = 0; y < 64; y += 9) {
+        for (int x = 0; x < 64; x += 3) {
+            const Vec3 want = rgb_at(x < 32 ? opaque : all_clear, x, y);
+            CHECK(glm::distance(rgb_at(image, x, y), want) < 2e-3f);
+        }
+    }
+}
+
 }  // namespace limn::test::transmission_test

@@ -107,6 +107,7 @@ tinygltf::ExtensionMap write_layers(const Material& material, const TextureWrite
         write_map(map.extension, map.member, material.*map.slot);
     }
     write_map("KHR_materials_volume", "thicknessTexture", material.thickness_texture);
+    write_map("KHR_materials_transmission", "transmissionTexture", material.transmission_texture);
     tinygltf::ExtensionMap extensions;
     for (auto& [name, object] : objects) {
         extensions.emplace(name, tinygltf::Value(std::move(object)));

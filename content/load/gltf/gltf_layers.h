@@ -46,6 +46,7 @@ inline constexpr TextureSlot Material::*kGltfSlots[] = {
     &Material::sheen_roughness_texture,  &Material::specular_weight_texture,
     &Material::specular_tint_texture,    &Material::anisotropy_texture,
     &Material::iridescence_texture,      &Material::iridescence_thickness_texture,
+    &Material::transmission_texture,
 };
 
 /// Sets the fields of the factors in these extensions.

@@ -19,8 +19,8 @@ namespace limn {
 // Supported: nodes, meshes of all index types as triangles, strips and fans, vertex colors, two uv
 // sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective and
 // orthographic cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
-// KHR_materials_transmission without its texture, KHR_materials_ior and KHR_materials_volume of
-// transmissive materials, KHR_materials_variants, KHR_materials_pbrSpecularGlossiness
+// KHR_materials_transmission, KHR_materials_ior and KHR_materials_volume of transmissive materials,
+// KHR_materials_variants, KHR_materials_pbrSpecularGlossiness
 // (gltf_glossiness.h), KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing,
 // EXT_meshopt_compression, EXT_texture_webp, MSFT_texture_dds (BC5 and BC7), points and lines
 // (gltf_strokes.h), skeletons, skins with any number of joints per vertex, morph targets with their

@@ -220,12 +220,10 @@ class MaterialBuilder {
             reflect_by_index(index, material);
             return;
         }
-        if (transmission.Has("transmissionTexture")) {
-            warn("transmissionTexture is unsupported, it is drawn opaque");
-            return;
-        }
         const tinygltf::Value& volume = extension_of(extensions, "KHR_materials_volume");
         material.transmission = factor;
+        material.transmission_texture =
+            slot(texture_of(transmission, "transmissionTexture"), false);
         material.refractive_index = std::clamp(index, 1.0f, kMaxIndex);
         material.thickness = std::min(number_of(volume, "thicknessFactor", 0), kMaxThickness);
         if (material.thickness > 0) {

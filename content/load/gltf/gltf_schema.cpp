@@ -115,6 +115,7 @@ constexpr std::string_view kTextureInfos[] = {
     "materials[].normalTexture",
     "materials[].occlusionTexture",
     "materials[].emissiveTexture",
+    "materials[].extensions.KHR_materials_transmission.transmissionTexture",
     "materials[].extensions.KHR_materials_volume.thicknessTexture",
     "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
     "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",

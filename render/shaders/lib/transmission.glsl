@@ -27,11 +27,15 @@ struct ClearMedium {
 ClearMedium clear_medium(uint material) {
     vec4 medium = block_texel(material, kClearBlock, 0);
     vec3 absorption = block_texel(material, kClearBlock, 1).rgb;
+    float transmission = medium.x;
     float thickness = medium.z * scale;
+#ifdef TRANSMISSION_MAP
+    transmission *= MAP_TEXEL(TRANSMISSION_MAP, kTransmissionSlot).r;
+#endif
 #ifdef THICKNESS_MAP
     thickness *= MAP_TEXEL(THICKNESS_MAP, kThicknessSlot).g;
 #endif
-    return ClearMedium(medium.x, medium.y, thickness, absorption, medium.w);
+    return ClearMedium(transmission, medium.y, thickness, absorption, medium.w);
 }
 
 // The image behind at `uv`, averaged over `diameter` pixels: four bilinear samples hide the texels of a mip level.
