@@ -33,6 +33,18 @@ TextureId copy_behind_surfaces(FrameGraph& graph, const MipLevels& levels, Textu
     return behind;
 }
 
+/// A copy of the depth of opaque surfaces.
+TextureId copy_depth(FrameGraph& graph, TextureId depth) {
+    TextureSpec spec = graph.spec(depth);
+    spec.name = "depth behind clear media";
+    const TextureId copy = graph.create(spec);
+    graph.add_pass(
+        "depth behind clear media", {depth}, {image(copy)}, [copy, depth](PassContext& context) {
+            context.texture(depth).copy_to(context.texture(copy));
+        });
+    return copy;
+}
+
 /// Draws a run; if it is double-sided, back faces first.
 void draw_blended(
     PassContext& context, const ViewData& view, const DrawRun& run, ProgramVariants& programs,
@@ -66,30 +78,11 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
         return;
     }
     const std::vector<DrawRun>& runs = view.data.get<InstanceList>().blended;
-    std::vector<Use> reads =
-        mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
-    if (has_any(runs, kTransmission)) {
-        reads.push_back(
-            sampled(copy_behind_surfaces(graph, levels, view.radiance), layout::kBehindClearUnit));
-        reads.push_back(sampled(view.gbuffer.depth, layout::kBehindClearDepthUnit));
-    }
-    const Use writes[] = {view.radiance};
     const bool clipped = is_clipped(view);
-    graph.add_pass(
-        "blended", std::span<const Use>(reads), writes,
-        [this, &view, &runs, clipped](PassContext& context) {
-            Variant variant = view.lighting.variant;
-            variant.add_if(clipped, "CLIPPED");
-            bind_lighting(context, view);
-            const SurfaceDraw draw = {
-                .variant = &variant,
-                .state = {
-                    .depth = {.write = false}, .blend = gpu::kBlendPremultiplied, .clip = clipped}};
-            for (const DrawRun& run : runs) {
-                draw_blended(context, view, run, programs, draw);
-            }
-        });
-    if (!clipped && has_any(runs, kRefraction)) {
+    const bool nearest_only = !clipped && has_any(runs, kRefraction);
+    TextureId behind_depth = view.gbuffer.depth;
+    if (nearest_only) {
+        behind_depth = copy_depth(graph, view.gbuffer.depth);
         const std::vector<Use> meshes = mesh_reads(graph, *view.frame);
         const Use depth[] = {view.gbuffer.depth};
         graph.add_pass(
@@ -102,6 +95,33 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
                 }
             });
     }
+    std::vector<Use> reads =
+        mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
+    if (has_any(runs, kTransmission)) {
+        reads.push_back(
+            sampled(copy_behind_surfaces(graph, levels, view.radiance), layout::kBehindClearUnit));
+        reads.push_back(sampled(behind_depth, layout::kBehindClearDepthUnit));
+    }
+    const Use writes[] = {view.radiance};
+    graph.add_pass(
+        "blended", std::span<const Use>(reads), writes,
+        [this, &view, &runs, clipped, nearest_only](PassContext& context) {
+            Variant variant = view.lighting.variant;
+            variant.add_if(clipped, "CLIPPED");
+            bind_lighting(context, view);
+            for (const DrawRun& run : runs) {
+                const bool is_nearest = nearest_only && run.features.has(kRefraction);
+                const SurfaceDraw draw = {
+                    .variant = &variant,
+                    .state = {
+                        .depth =
+                            {.write = false,
+                             .func = static_cast<GLenum>(is_nearest ? GL_EQUAL : GL_GREATER)},
+                        .blend = gpu::kBlendPremultiplied,
+                        .clip = clipped}};
+                draw_blended(context, view, run, programs, draw);
+            }
+        });
 }
 
 }  // namespace limn

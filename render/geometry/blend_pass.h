@@ -14,7 +14,8 @@ namespace limn {
 // Shaders  mesh.vert, blend.frag, lib/lighting.glsl, lib/transmission.glsl
 //
 // Sorted by the center of each instance's box: intersecting surfaces, and concave ones against
-// themselves, may be drawn in the wrong order. Clear media do not show other blended surfaces
+// themselves, may be drawn in the wrong order. Of media with thickness only the nearest surface is
+// drawn: its image is that of all of the medium. Clear media do not show other blended surfaces
 // behind them. Later passes, such as depth of field, read the depth of a medium with thickness;
 // otherwise that of the surface behind, so that snow is visible through a window.
 

@@ -336,4 +336,41 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    GlassScene, "transmission: of a medium that covers itself only the nearest surface is drawn") {
+    add_edge(-3, 5);  // white
+    // Two squares, the near one first; one is red, the other green.
+    MeshData two = make_square();
+    const MeshData one = two;
+    for (std::size_t i = 0; i < one.positions.size(); ++i) {
+        two.uvs[i] = {0.25f, 0.5f};
+        two.positions.push_back(one.positions[i] - Vec3(0, 0, 0.5f));
+        two.normals.push_back(one.normals[i]);
+        two.tangents.push_back(one.tangents[i]);
+        two.uvs.emplace_back(0.75f, 0.5f);
+        grow(two.bounds, two.positions.back());
+    }
+    for (const std::uint32_t index : one.indices) {
+        two.indices.push_back(index + 4);
+    }
+    Material colored = glass(0.5f);
+    colored.base_color_texture = {
+        .image = add(ImageData{
+            .name = "red and green",
+            .width = 2,
+            .height = 1,
+            .pixels = {255, 0, 0, 255, 0, 255, 0, 255}}),
+        .nearest = true};
+    const MeshId mesh = add(std::move(two));
+    for (const bool double_sided : {false, true}) {
+        CAPTURE(double_sided);
+        colored.double_sided = double_sided;
+        const Entity pane = place(mesh, add(colored), at({0, 0, 0}));
+        const Vec3 seen = rgb_at(radiance(look({0, 0, 2}, {0, 0, 0})), 32, 32);
+        CHECK(seen.x == near(kLetIn).epsilon(0.01));
+        CHECK(seen.y < 0.01f);
+        world.destroy(pane);
+    }
+}
+
 }  // namespace limn::test::transmission_test
