@@ -31,6 +31,7 @@
 #include "systems/faces/wrinkle_track_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/lens_control_system.h"
+#include "systems/light/light_map_system.h"
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
@@ -76,6 +77,7 @@ void add_object_systems(SystemList& systems) {
     systems.add<add_world_transforms>(Create);
     systems.add<add_env_probe_states>(Create, Both);
     systems.add<add_relief_box_states>(Create, Both);
+    systems.add<add_light_map_states>(Create, Both);
     systems.add<update_attach>(Create, Both);
     systems.add<update_spins>(Move);
     systems.add<update_sways>(Move, Both);
@@ -87,6 +89,7 @@ void add_object_systems(SystemList& systems) {
     systems.add<update_transforms>(Place, Both);
     systems.add<keep_input>(View);
     systems.add<update_env_probes>(Follow, Both);  // captures from the current position
+    systems.add<update_light_maps>(Follow, Both);  // after everything that moves lights
 }
 
 void add_animation_systems(SystemList& systems) {
@@ -227,6 +230,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);
     resource_or_default<CrowdMemory>(world);
+    resource_or_default<LightMapOccluders>(world);
     return resource_or_default<FrameTime>(world);
 }
 

@@ -33,6 +33,7 @@
 #include "ecs/components/lens_flare.h"
 #include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
+#include "ecs/components/light_map.h"
 #include "ecs/components/mesh_levels.h"
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
@@ -128,6 +129,9 @@ void register_all_components() {
     register_component<Sway>();
     register_component<MeshInstance>();
     register_component<MeshLevels>();
+    register_component<BakedLight>();
+    register_component<LightMap>();
+    register_component<LightMapState>();
     register_component<ReliefBox>();
     register_component<ReliefBoxState>();
     register_component<Inflate>();

@@ -91,6 +91,7 @@ struct ImageData {
     int mip_levels = 1;  ///< levels in `pixels`, the largest first; more than 1 for blocks only
     std::vector<std::uint8_t>
         pixels;  ///< width * height * (4, 8 or 16) bytes, or 16 bytes a block of each level
+    std::uint32_t version = 0;  ///< increment after editing pixels in place
 };
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
@@ -295,6 +296,7 @@ struct Material {
     TextureSlot detail_texture = {};
     TextureSlot thickness_texture = {};
     TextureSlot transmission_texture = {};
+    TextureSlot light_map_texture = {};
     TextureSlot relief_texture = {};
     TextureSlot clearcoat_texture = {};
     TextureSlot clearcoat_roughness_texture = {};
@@ -448,6 +450,10 @@ LIMN_FIELDS(Material) {
         "scale to tile it");
     LIMN_FIELD(thickness_texture, "green = fraction of the thickness");
     LIMN_FIELD(transmission_texture, "red = factor of transmission");
+    LIMN_FIELD(
+        light_map_texture,
+        "linear diffuse light, irradiance over pi, in addition to that of lights: multiplied by "
+        "the base color; shaded per pixel only");
     LIMN_FIELD(
         relief_texture,
         "replaces normal_texture where `detail` needs it: red, green = tangent-space normal, alpha "

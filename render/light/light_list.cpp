@@ -1,5 +1,6 @@
 #include "render/light/light_list.h"
 
+#include "ecs/components/light_map.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -96,7 +97,8 @@ void each_light(const World& world, double time, float alpha, bool all, Use&& us
     world
         .query<
             const Light, const WorldTransform, Optional<const PreviousWorldTransform>,
-            Optional<const LightPulse>, Optional<const Shadow>, Optional<const Projector>>()
+            Optional<const LightPulse>, Optional<const Shadow>, Optional<const Projector>,
+            Without<BakedLight>>()
         .each([&](Entity entity, const Light& light, const WorldTransform& now,
                   const PreviousWorldTransform* before, const LightPulse* pulse,
                   const Shadow* shadow, const Projector* projector) {

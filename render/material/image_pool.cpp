@@ -179,6 +179,16 @@ void ImagePool::upload_normals(Image& image, const ImageData& data, NormalMips m
     arrays_[image.spread.array].has_normals |= image.spread.array != 0;
 }
 
+void ImagePool::refresh(std::span<const ImageData> images) {
+    const std::size_t count = std::min(images_.size(), images.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        if (images_[i].version != images[i].version) {
+            images_[i].version = images[i].version;
+            replace({static_cast<std::uint32_t>(i)}, images[i].pixels);
+        }
+    }
+}
+
 void ImagePool::replace(ImageId id, std::span<const std::uint8_t> pixels) {
     const ImageLayer location = find(id);
     if (location.array == 0) {
@@ -238,6 +248,7 @@ ImagePool::allocate_layers(std::span<const ImageData> images, const NormalMaps& 
     for (std::size_t i = images_.size(); i < images.size(); ++i) {
         const ImageData& image = images[i];
         images_.emplace_back();
+        images_.back().version = image.version;
         if (!is_valid_image(image, max_size)) {
             log_error(
                 "image {}: found {}x{} pixels in {} bytes, expected 1 .. {} pixels per side and "

@@ -46,6 +46,8 @@ class ImagePool {
     /// stays.
     void update(std::span<const ImageData> images, const NormalMaps& normal_maps = {});
     [[nodiscard]] std::size_t size() const { return images_.size(); }
+    /// Uploads images again whose ImageData::version has changed.
+    void refresh(std::span<const ImageData> images);
     /// Replaces the pixels of an image, in its own format and the layout of ImageData; does nothing
     /// if there is no such image or the size differs.
     void replace(ImageId id, std::span<const std::uint8_t> pixels);
@@ -81,6 +83,7 @@ class ImagePool {
         gpu::Texture texture;  ///< a view of its layer
         ImageLayer spread;
         std::optional<NormalMips> normals;  ///< of a normal map
+        std::uint32_t version = 0;          ///< ImageData::version
     };
 
     /// Assigns layers to new images and spreads; returns the arrays to create.

@@ -41,6 +41,7 @@ constexpr MapSlot kSlots[] = {
      &Material::iridescence_thickness_texture, false, kFilmLayer},
     {layout::kNormalSpreadSlot, "NORMAL_SPREAD_MAP", &Material::normal_texture, false},
     {layout::kTransmissionSlot, "TRANSMISSION_MAP", &Material::transmission_texture, false},
+    {layout::kLightMapSlot, "LIGHT_MAP", &Material::light_map_texture, false},
 };
 
 constexpr bool numbers_fit() {

@@ -93,6 +93,7 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
         material_count_ = 0;
         material_version_ = 0;
     }
+    images_.refresh(assets.images);
     const bool more_images = images_.size() < assets.images.size();
     if (!fresh && !more_images && limit_ == limit && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {

@@ -29,6 +29,7 @@ const uint kIridescenceSlot = 17u;          // r
 const uint kIridescenceThicknessSlot = 18u; // g
 const uint kNormalSpreadSlot = 19u;         // of the normal map: render/material/normal_mips.h
 const uint kTransmissionSlot = 20u;         // r
+const uint kLightMapSlot = 21u;             // irradiance / pi
 
 const uint kMaxMapSlots = 24u;
 

@@ -106,7 +106,7 @@ class CacheReader {
 
 template <typename Archive, typename Image>
 void visit_image(Archive& archive, Image& image) {
-    auto& [name, width, height, format, srgb, mip_levels, pixels] = image;
+    auto& [name, width, height, format, srgb, mip_levels, pixels, version] = image;
     archive(name);
     archive(width);
     archive(height);
@@ -114,6 +114,7 @@ void visit_image(Archive& archive, Image& image) {
     archive(srgb);
     archive(mip_levels);
     archive(pixels);
+    archive(version);
 }
 
 template <typename Archive, typename Maps>

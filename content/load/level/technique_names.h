@@ -226,6 +226,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"light.height-fog", "height fog, exponential fog"},
     {"light.infinite-approx", "infinite light and viewer"},
     {"light.interface", "light shaders and surface shaders"},
+    {"light.lightmap", "light map, lightmap, baked lighting"},
     {"light.lit", "lit() function"},
     {"light.microfacet", "physically based shading, PBR, GGX, metallic-roughness"},
     {"light.multi", "many lights in one shader"},

@@ -3,7 +3,7 @@
 //   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP DETAIL_MAP THICKNESS_MAP RELIEF_MAP
 //   CLEARCOAT_MAP CLEARCOAT_ROUGHNESS_MAP CLEARCOAT_NORMAL_MAP SHEEN_MAP SHEEN_ROUGHNESS_MAP SPECULAR_WEIGHT_MAP
 //   SPECULAR_TINT_MAP ANISOTROPY_MAP IRIDESCENCE_MAP IRIDESCENCE_THICKNESS_MAP
-//   NORMAL_SPREAD_MAP TRANSMISSION_MAP  each is the texture unit of the map
+//   NORMAL_SPREAD_MAP TRANSMISSION_MAP LIGHT_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP, UV_MAPS  of lib/material_maps.glsl
@@ -347,6 +347,9 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
 #ifdef OCCLUSION_MAP
     s.occlusion = 1.0 + factors.z * (MAP_TEXEL(OCCLUSION_MAP, kOcclusionSlot).r - 1.0);
+#endif
+#ifdef LIGHT_MAP
+    s.emission += (1.0 - s.metalness) * s.albedo * MAP_TEXEL(LIGHT_MAP, kLightMapSlot).rgb;
 #endif
     // Highlights of strands follow their direction, not the normal.
     s.roughness = has_strands(s.model) ? s.roughness : widen_roughness(s.roughness, s.normal_ws);

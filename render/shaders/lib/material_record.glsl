@@ -37,6 +37,6 @@ float map_layer(vec4 layers, uint slot) {
 }
 
 // All stages of a program must declare the same varyings.
-#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP) || defined(RELIEF_MAP) || defined(CLEARCOAT_MAP) || defined(CLEARCOAT_ROUGHNESS_MAP) || defined(CLEARCOAT_NORMAL_MAP) || defined(SHEEN_MAP) || defined(SHEEN_ROUGHNESS_MAP) || defined(SPECULAR_WEIGHT_MAP) || defined(SPECULAR_TINT_MAP) || defined(ANISOTROPY_MAP) || defined(IRIDESCENCE_MAP) || defined(IRIDESCENCE_THICKNESS_MAP) || defined(NORMAL_SPREAD_MAP) || defined(TRANSMISSION_MAP)
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP) || defined(WRINKLE_MAP) || defined(DETAIL_MAP) || defined(THICKNESS_MAP) || defined(RELIEF_MAP) || defined(CLEARCOAT_MAP) || defined(CLEARCOAT_ROUGHNESS_MAP) || defined(CLEARCOAT_NORMAL_MAP) || defined(SHEEN_MAP) || defined(SHEEN_ROUGHNESS_MAP) || defined(SPECULAR_WEIGHT_MAP) || defined(SPECULAR_TINT_MAP) || defined(ANISOTROPY_MAP) || defined(IRIDESCENCE_MAP) || defined(IRIDESCENCE_THICKNESS_MAP) || defined(NORMAL_SPREAD_MAP) || defined(TRANSMISSION_MAP) || defined(LIGHT_MAP)
 #define MAP_LAYERS
 #endif
