@@ -1,6 +1,7 @@
 #include "content/make/models/creature_gait.h"
 
 #include "content/models/fox_model.h"
+#include "ecs/base/foot_flight.h"
 #include "ecs/base/rotation.h"
 
 #include <glm/common.hpp>
@@ -8,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-// Techniques: char.foot-flight
 
 namespace limn {
 
@@ -111,7 +110,7 @@ FootPath foot_at(const Gait& gait, Leg leg, float phase) {
     const float z = info.center - half_step + slope * (s3 - 2.0f * s2 + s)
                     + 2.0f * half_step * (3.0f * s2 - 2.0f * s3) + slope * (s3 - s2);
     FootPath path;
-    path.position = {z, height + 0.5f * gait.lift * swing_height(s)};
+    path.position = {z, height + 0.5f * gait.lift * flight_height(s)};
     path.slope = glm::mix(info.push_off, info.set_down, glm::smoothstep(0.2f, 1.0f, s))
                  + info.fold * square(std::sin(kPi * std::pow(s, 0.8f)));
     path.pitch = 1.5f * std::sin(kPi * s) * (1.0f - s);
@@ -243,11 +242,6 @@ std::span<const Gait> creature_gaits() {
 float stance_progress(const Gait& gait, Leg leg, float phase) {
     const float since = wrapped(phase - gait.touchdown[static_cast<std::size_t>(leg)]);
     return since < gait.duty || gait.duty >= 1.0f ? since / gait.duty : -1.0f;
-}
-
-float swing_height(float s) {
-    const float x = 3.0f * kPi * s;
-    return x <= kPi ? 1.0f - std::cos(x) : 1.0f - std::cos(0.5f * (kPi + x));
 }
 
 ClipData make_gait_clip(const Gait& gait, float scale) {

@@ -9,7 +9,7 @@
 namespace limn {
 
 // Gaits of the creature. The paths of its feet are given - on the ground they move back at the
-// speed of the body, in the air they follow a swing curve - and the legs are solved by inverse
+// speed of the body, in the air they follow foot_flight.h - and the legs are solved by inverse
 // kinematics (char.walk-cycle): the last bone has a given slope, the two above it form a triangle.
 // The trunk bends in the plane of symmetry only, so that planted feet do not slide. Footfalls after
 // E. Muybridge, "Animals in Motion" (1899): a walk sets down left hind, left fore, right hind,
@@ -47,10 +47,6 @@ struct Gait {
 
 /// Progress of a foot through its stance, 0 .. 1; < 0 while it is in the air.
 [[nodiscard]] float stance_progress(const Gait& gait, Leg leg, float phase);
-
-/// Height of a foot from lift-off (s = 0) to touchdown (1), 0 .. 2: up in the first third, down in
-/// the rest (char.foot-flight).
-[[nodiscard]] float swing_height(float s);
 
 /// A looping clip for a creature scaled by `scale`. Animates all joints, and the morph weights 0
 /// (blink) and 1 (breath). Its contacts are the stances of the feet; one that lasts beyond the end
