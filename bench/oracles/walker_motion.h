@@ -79,20 +79,21 @@ inline SkeletonData make_walker(const WalkerShape& shape = {}) {
 }
 
 /// Walks along +z, each foot planted for 60 % of its step; 60 frames per second. The arms swing.
-struct Walk {
+struct RecordedWalk {
     SkeletonMotion motion;
     std::vector<ClipContact> plants;  ///< of both ankles
     float stride = 0;                 ///< that a foot moves from plant to plant [m]
     float lift = 0;                   ///< height of a flight above the plants [m]
 };
 
-inline Walk make_walk(const SkeletonData& skeleton, float seconds = 3.0f, float lift = 0.1f) {
+inline RecordedWalk
+make_walk(const SkeletonData& skeleton, float seconds = 3.0f, float lift = 0.1f) {
     constexpr float kRate = 60;
     constexpr float kCycle = 1.0f;   // [s]
     constexpr float kFlight = 0.4f;  // of the cycle
     const BodyJoints body = find_body_joints(skeleton);
     const float leg = find_leg_length(skeleton, body);
-    Walk walk;
+    RecordedWalk walk;
     walk.stride = 1.2f * leg;
     walk.lift = lift;
     const std::vector<Affine> rest = find_rest_matrices(skeleton);

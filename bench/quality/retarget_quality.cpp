@@ -73,7 +73,8 @@ double effector_error(
 }
 
 /// Longest way of an ankle from where its plant begins, of all plants [mm].
-double slide_of(const SkeletonData& skeleton, const ClipData& clip, const oracle::Walk& walk) {
+double
+slide_of(const SkeletonData& skeleton, const ClipData& clip, const oracle::RecordedWalk& walk) {
     const BodyJoints source = find_body_joints(walk.motion.skeleton);
     const BodyJoints body = find_body_joints(skeleton);
     const DPositions positions = exact_positions(skeleton, clip);
@@ -122,7 +123,8 @@ ColorImage draw_bones(HeadlessRenderer& headless, const SkeletonMotion& motion, 
     return displayed(scene.radiance(headless, view, 4));
 }
 
-ClipData retargeted(const oracle::Walk& walk, const SkeletonData& target, bool pins = true) {
+ClipData
+retargeted(const oracle::RecordedWalk& walk, const SkeletonData& target, bool pins = true) {
     SkeletonMotion source = walk.motion;
     source.clip.contacts = walk.plants;
     RetargetOptions options;
@@ -131,7 +133,7 @@ ClipData retargeted(const oracle::Walk& walk, const SkeletonData& target, bool p
 }
 
 Status measure_retarget(HeadlessRenderer& headless, QualityReport& report) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const SkeletonData& source = walk.motion.skeleton;
     const DPositions expected = exact_positions(source, walk.motion.clip);
     const auto error_on = [&](const SkeletonData& target) {

@@ -65,7 +65,7 @@ float largest_difference(
 }
 
 /// Longest way of an ankle during the plants of the walk, of the leg's length.
-float slide_of(const ClipData& clip, const SkeletonData& skeleton, const oracle::Walk& walk) {
+float slide_of(const ClipData& clip, const SkeletonData& skeleton, const oracle::RecordedWalk& walk) {
     const BodyJoints source = find_body_joints(walk.motion.skeleton);
     const BodyJoints body = find_body_joints(skeleton);
     std::vector<ClipContact> plants = walk.plants;
@@ -116,7 +116,7 @@ TEST_CASE("two links: a straight leg bends its knee forward" * technique("char.r
 TEST_CASE(
     "body retarget: an identical skeleton gets the identical clip"
     * technique("char.retarget-body")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}));
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}));
     walk.motion.clip.contacts = {// of a foot that does move
                                  {walk.plants[0].joint, 0, walk.motion.clip.duration}};
     const ClipData clip = retargeted(walk.motion, walk.motion.skeleton);
@@ -135,7 +135,7 @@ TEST_CASE(
 
 TEST_CASE(
     "body retarget: on a larger copy all positions are larger" * technique("char.retarget-body")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     for (const float factor : {0.4f, 2.5f}) {
         const SkeletonData target = scaled(walk.motion.skeleton, factor);
         RetargetReport report;
@@ -150,7 +150,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: planted feet stay, and slide without inverse kinematics"
     * technique("char.retarget-body")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const SkeletonData target = oracle::make_walker(kShortShins);
     RetargetReport report;
     const ClipData clip = retargeted(walk.motion, target, {}, &report);
@@ -167,7 +167,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: feet stand on the ground with ankles of their own height"
     * technique("char.retarget-body")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     walk.motion.clip.contacts = walk.plants;
     for (const float ankle : {0.05f, 0.14f}) {
         oracle::WalkerShape shape = kShortShins;
@@ -188,7 +188,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: a recording with its hips at the origin stands on the ground"
     * technique("char.retarget-body")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const SkeletonData target = oracle::make_walker(kShortShins);
     const ClipData expected = retargeted(walk.motion, target);
     // Rest and motion lower, then the rest pose alone, as most BVH files have it.
@@ -212,7 +212,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: where the leg is too short the hips are lowered"
     * technique("char.retarget-body")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     walk.motion.clip.contacts = walk.plants;
     // Feet that stay on the ground for longer than they were: the hips go on.
     for (ClipContact& contact : walk.motion.clip.contacts) {
@@ -234,7 +234,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: names, axes and rest poses of other programs give the same motion"
     * technique("char.retarget-body")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const auto expected = positions_of(walk.motion);
     const BodyJoints from = find_body_joints(walk.motion.skeleton);
     const oracle::WalkerShape shapes[] = {
@@ -285,7 +285,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: hands may follow their way instead of the angles"
     * technique("char.retarget-body")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     SkeletonData target = walk.motion.skeleton;
     const BodyJoints body = find_body_joints(target);
     for (const BodyPart part : {BodyPart::LeftForearm, BodyPart::LeftHand}) {
@@ -304,7 +304,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: skeletons without common joints fail with one line"
     * technique("char.retarget-body")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     SkeletonData chair;
     chair.joints = {"seat", "leg a", "leg b"};
     chair.parents = {-1, 0, 0};
@@ -326,7 +326,7 @@ TEST_CASE(
 TEST_CASE(
     "body retarget: bones without length, legs without feet and clips without keys are finite"
     * technique("char.retarget-body")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker(), 1);
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker(), 1);
     const auto check_finite = [&](const SkeletonMotion& source, const SkeletonData& target) {
         const ClipData clip = retargeted(source, target, {.hands = 0.5f});
         for (const auto& row : positions_of({target, clip})) {

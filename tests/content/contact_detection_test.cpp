@@ -24,7 +24,7 @@ std::vector<std::uint16_t> ankles_of(const SkeletonData& skeleton) {
     return {body[BodyPart::LeftFoot], body[BodyPart::RightFoot]};
 }
 
-std::vector<ClipContact> contacts_of(const oracle::Walk& walk, float noise = 0) {
+std::vector<ClipContact> contacts_of(const oracle::RecordedWalk& walk, float noise = 0) {
     MotionFrames frames = sample_frames(walk.motion, 60);
     Random random(1, 2, 3, 4);
     for (std::size_t f = 0; f < frames.frames() && noise > 0; ++f) {
@@ -92,7 +92,7 @@ TEST_CASE(
         for (Vec3& t : skeleton.rest.translations) {
             t *= size;
         }
-        const oracle::Walk walk = oracle::make_walk(skeleton, 3, 0.1f * size);
+        const oracle::RecordedWalk walk = oracle::make_walk(skeleton, 3, 0.1f * size);
         const std::vector<ClipContact> contacts = contacts_of(walk);
         REQUIRE(contacts.size() == walk.plants.size());
         for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -107,14 +107,14 @@ TEST_CASE(
 }
 
 TEST_CASE("contacts: noise neither makes nor breaks them" * technique("char.walk-retarget")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     CHECK(contacts_of(walk, 0.002f).size() == walk.plants.size());
     CHECK(contacts_of(walk, 0.004f).size() == walk.plants.size());
 }
 
 TEST_CASE(
     "contacts: a body at rest stands, one that falls does not" * technique("char.walk-retarget")) {
-    oracle::Walk walk = oracle::make_walk(oracle::make_walker(), 1);
+    oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker(), 1);
     const SkeletonData& skeleton = walk.motion.skeleton;
     walk.motion.clip.sheets.clear();
     MotionFrames frames = sample_frames(walk.motion, 60);
@@ -131,7 +131,8 @@ TEST_CASE(
 TEST_CASE(
     "travel: a walk on the spot goes as far as its feet go back"
     * technique("char.walk-retarget")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}));
+    const oracle::RecordedWalk walk =
+        oracle::make_walk(oracle::make_walker({.has_bone_axes = true}));
     MotionFrames frames = sample_frames(walk.motion, 60);
     const MotionFrames original = frames;
     const std::size_t joints = frames.joints;
@@ -150,7 +151,7 @@ TEST_CASE(
 TEST_CASE(
     "flight curve: a walk returns its own flight, forward and up"
     * technique("char.walk-retarget, char.foot-flight")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const MotionFrames frames = sample_frames(walk.motion, 60);
     const std::vector<FlightCurve> flights =
         extract_flights(walk.motion.skeleton, frames, walk.plants, 25);
@@ -185,8 +186,8 @@ TEST_CASE(
     for (Vec3& t : skeleton.rest.translations) {
         t *= 1.7f;
     }
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
-    const oracle::Walk large = oracle::make_walk(skeleton, 3, 0.1f * 1.7f);
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk large = oracle::make_walk(skeleton, 3, 0.1f * 1.7f);
     const auto small_flights =
         extract_flights(walk.motion.skeleton, sample_frames(walk.motion, 60), walk.plants);
     const auto large_flights =
@@ -205,7 +206,8 @@ TEST_CASE(
 TEST_CASE(
     "loop: the best interval of a walk is a whole number of cycles, and has no seam"
     * technique("char.mocap-cleanup")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker({.has_bone_axes = true}), 3.4f);
+    const oracle::RecordedWalk walk =
+        oracle::make_walk(oracle::make_walker({.has_bone_axes = true}), 3.4f);
     const SkeletonData& skeleton = walk.motion.skeleton;
     MotionFrames frames = sample_frames(walk.motion, 60);
     const auto loop = find_loop(skeleton, frames, 0.4f, 1.5f);

@@ -111,7 +111,7 @@ TEST_CASE(
 TEST_CASE(
     "ghosts: a trail follows the joint, the highlight is in all ghosts"
     * technique("char.ghost-view")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker());
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker());
     const GltfScene scene =
         ghosts_of(walk.motion, {.step = 0.5f, .trails = {"LeftFoot"}, .highlight = "LeftLeg"});
     std::size_t highlights = 0;
@@ -138,7 +138,7 @@ TEST_CASE(
 
 TEST_CASE(
     "curves: the plot passes through all samples of the channels" * technique("char.ghost-view")) {
-    const oracle::Walk walk = oracle::make_walk(oracle::make_walker(), 1);
+    const oracle::RecordedWalk walk = oracle::make_walk(oracle::make_walker(), 1);
     const BvhFile bvh = make_bvh_file(walk.motion, 60);
     const auto curves = *find_channel_curves(bvh, "LeftUpLeg");
     REQUIRE(curves.size() == 3);

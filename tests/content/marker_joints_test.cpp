@@ -18,7 +18,7 @@ namespace {
 
 /// Markers around the joints of a walker, `per_joint` on each that has some.
 struct Take {
-    oracle::Walk walk;
+    oracle::RecordedWalk walk;
     std::vector<BodyMarker> markers;
     MarkerMotion motion;
 };
