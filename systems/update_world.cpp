@@ -17,6 +17,8 @@
 #include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
+#include "systems/animation/walk/crowd_walk_system.h"
+#include "systems/animation/walk/walk_system.h"
 #include "systems/attach_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/characters/hero_system.h"
@@ -115,6 +117,10 @@ void add_animation_systems(SystemList& systems) {
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
     systems.add<add_foot_contacts>(Create, Both);
+    systems.add<add_walk_states>(Create, Both);
+    systems.add<add_crowd_walks>(Create, Both);
+    systems.add<update_walk_routes>(Animate);
+    systems.add<update_walks>(Animate, Both);  // after all that moves characters
     systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
     systems.add<add_ragdoll_states>(Create, Both);
@@ -226,6 +232,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<StepJumps>(world);
     resource_or_default<WalkableMeshes>(world);
     resource_or_default<RagdollRigs>(world);
+    resource_or_default<CrowdWalkClips>(world);
     resource_or_default<CrowdLibrary>(world);
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);

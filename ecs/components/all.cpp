@@ -73,6 +73,7 @@
 #include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/vignette.h"
+#include "ecs/components/walk.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_look.h"
@@ -160,6 +161,11 @@ void register_all_components() {
     register_component<CrowdState>();
     register_component<FlockParams>();
     register_component<Boid>();
+    register_component<Walk>();
+    register_component<WalkState>();
+    register_component<WalkRoute>();
+    register_component<WalkRouteState>();
+    register_component<CrowdWalk>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

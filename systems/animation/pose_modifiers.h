@@ -4,10 +4,12 @@
 #include "ecs/components/ik.h"
 #include "ecs/components/motion_graph.h"
 #include "ecs/components/ragdoll.h"
+#include "ecs/components/walk.h"
 #include "ecs/param_group.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "systems/animation/graph/motion_plan.h"
+#include "systems/animation/walk/walk_body.h"
 
 namespace limn {
 
@@ -15,6 +17,7 @@ namespace limn {
 /// matrices, as one
 /// parameter of update_poses.
 struct PoseModifiers {
+    Query<const Walk, const WalkState, const WalkBody> walks;
     Query<const FootPlant, const FootContacts> plants;
     Query<const IkRig, const IkGoals> rigs;
     Query<const LookAt, const Gaze> looks;
@@ -28,9 +31,9 @@ struct PoseModifiers {
 template <>
 struct SystemParam<PoseModifiers>
     : ParamGroup<
-          PoseModifiers, Query<const FootPlant, const FootContacts>,
-          Query<const IkRig, const IkGoals>, Query<const LookAt, const Gaze>,
-          Query<const ReachGoal, const ReachState>,
+          PoseModifiers, Query<const Walk, const WalkState, const WalkBody>,
+          Query<const FootPlant, const FootContacts>, Query<const IkRig, const IkGoals>,
+          Query<const LookAt, const Gaze>, Query<const ReachGoal, const ReachState>,
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
           Query<const RagdollState>> {};

@@ -9,6 +9,7 @@
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
+#include "systems/animation/walk/walk_pose.h"
 
 #include <algorithm>
 #include <map>
@@ -170,15 +171,15 @@ class Modifiers {
     explicit Modifiers(const PoseModifiers& queries)
         : queries_(queries),
           any_(
-              !queries.plants.empty() || !queries.rigs.empty() || !queries.looks.empty()
-              || !queries.reaches.empty() || !queries.ragdolls.empty()),
+              !queries.walks.empty() || !queries.plants.empty() || !queries.rigs.empty()
+              || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()),
           any_graph_(!queries.graphs.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return (any_
-                && (queries_.plants.contains(entity) || queries_.rigs.contains(entity)
-                    || queries_.looks.contains(entity) || queries_.reaches.contains(entity)
-                    || queries_.ragdolls.contains(entity)))
+                && (queries_.walks.contains(entity) || queries_.plants.contains(entity)
+                    || queries_.rigs.contains(entity) || queries_.looks.contains(entity)
+                    || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)))
                || (any_graph_ && queries_.graphs.contains(entity));
     }
 
@@ -199,6 +200,11 @@ class Modifiers {
         LocalPose& pose) const {
         if (!any_) {
             return;
+        }
+        if (const Walk* const walk = queries_.walks.find<const Walk>(entity)) {
+            apply_walk(
+                skeleton, *walk, *queries_.walks.find<const WalkState>(entity),
+                *queries_.walks.find<const WalkBody>(entity), pose);
         }
         if (const FootPlant* const plant = queries_.plants.find<const FootPlant>(entity)) {
             const FootContacts* const contacts = queries_.plants.find<const FootContacts>(entity);

@@ -65,7 +65,8 @@ float largest_difference(
 }
 
 /// Longest way of an ankle during the plants of the walk, of the leg's length.
-float slide_of(const ClipData& clip, const SkeletonData& skeleton, const oracle::RecordedWalk& walk) {
+float slide_of(
+    const ClipData& clip, const SkeletonData& skeleton, const oracle::RecordedWalk& walk) {
     const BodyJoints source = find_body_joints(walk.motion.skeleton);
     const BodyJoints body = find_body_joints(skeleton);
     std::vector<ClipContact> plants = walk.plants;
