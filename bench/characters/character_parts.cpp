@@ -9,6 +9,7 @@ void add_ik_rows(CharacterBench& bench);
 void add_memory_rows(CharacterBench& bench);
 void add_ragdoll_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
+void add_graph_rows(CharacterBench& bench);
 
 std::span<const CharacterPart> character_parts() {
     static constexpr CharacterPart kParts[] = {
@@ -18,6 +19,7 @@ std::span<const CharacterPart> character_parts() {
         {"ik", add_ik_rows},            // 10 .. 12
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
+        {"graph", add_graph_rows},      // motion graphs
         {"ragdoll", add_ragdoll_rows},
     };
     return kParts;

@@ -196,10 +196,8 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
     CHECK(
         error_of(R"({"entites": []})")
         == "t.level.json:1:2: found the key \"entites\", expected one of title description "
-           "include resources "
-           "images materials paths meshes prefabs entities events bindings shows $schema (did you "
-           "mean "
-           "entities?)");
+           "include resources images materials paths meshes motion_graphs prefabs entities events "
+           "bindings shows $schema (did you mean entities?)");
     const std::string component =
         error_of("{\"entities\": [\n  {\"name\": \"lamp\", \"point_ligth\": {}}]}");
     CHECK(component.starts_with("t.level.json:2:20: entity \"lamp\": found the component "

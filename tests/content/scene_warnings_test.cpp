@@ -87,6 +87,12 @@ TEST_CASE("scene warnings: components that have no effect without another") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "eye", "camera_path": {"keys": [{}]}}]})")
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "fox", "motion_graph": {}, "motion_style": {}},
+            {"name": "hen", "motion_style": {}}]})")
+        == Warnings{
+            "entity \"fox\": motion_graph has no effect without skeleton",
+            "entity \"hen\": motion_style has no effect without motion_graph"});
 }
 
 TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {

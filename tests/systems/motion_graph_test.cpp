@@ -354,6 +354,19 @@ TEST_CASE("blend space: weights in a plane sum to 1, are continuous, and one cli
     }
 }
 
+TEST_CASE("blend space: in a square, a point near a corner is half that corner's") {
+    const std::vector<GraphClip> corners = {
+        {{0}, {0, 0}, 0}, {{1}, {1, 0}, 0}, {{2}, {0, 1}, 0}, {{3}, {1, 1}, 0}};
+    // Influences 3/4 and three times 1/4.
+    const ClipWeights near_corner = blend_weights(corners, true, {0.25f, 0.25f});
+    CHECK(near_corner[0] == near(0.5));
+    CHECK(near_corner[1] == near(1.0 / 6));
+    CHECK(near_corner[2] == near(1.0 / 6));
+    CHECK(near_corner[3] == near(1.0 / 6));
+    const ClipWeights center = blend_weights(corners, true, {0.5f, 0.5f});
+    CHECK(center[3] == near(0.25));
+}
+
 TEST_CASE("blend space: its clips are synchronized by their footfalls") {
     MotionGraphData graph;
     graph.feet = {"joint 2", "joint 3"};

@@ -66,6 +66,8 @@ constexpr Need kNeeds[] = {
     {"camera_path", {"camera", "", ""}},
     {"crowd_pose", {"skeleton", "", ""}},
     {"crowd_pose", {"clip_player", "", ""}},
+    {"motion_graph", {"skeleton", "", ""}},
+    {"motion_style", {"motion_graph", "", ""}},
     {"speed_view", {"camera", "", ""}},
     {"fur", {"mesh_instance", "", ""}},
     {"inflate", {"mesh_instance", "", ""}},
