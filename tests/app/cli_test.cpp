@@ -63,7 +63,7 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "import",
+         {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "import", "make",
           "levels", "shows", "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);

@@ -11,6 +11,7 @@
 #include "content/app/commands/info_command.h"
 #include "content/app/commands/list_commands.h"
 #include "content/app/commands/log_sink.h"
+#include "content/app/commands/make_command.h"
 #include "content/app/commands/render_command.h"
 #include "content/app/commands/shows_command.h"
 #include "content/app/commands/sibling_program.h"
@@ -553,6 +554,29 @@ Command add_import(CLI::App& program, ImportOptions& options) {
     return {app, [&options] { return run_import(options); }};
 }
 
+Command add_make(CLI::App& program, MakeOptions& options) {
+    CLI::App* app = program.add_subcommand("make", "Write a generated mesh as glTF");
+    app->add_option(
+           "kind", options.kind, "of mesh, as \"make\" of a level: person, head, teapot ...")
+        ->type_name("KIND")
+        ->required();
+    app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    app->add_flag(
+        "--parts", options.parts, "all parts that the kind has, each a mesh with its own material");
+    add_assignments(
+        *app, options.assignments, "--set",
+        "a parameter of the kind; `limn components` lists them with ranges and defaults");
+    app->footer("With skin, skeleton, clips and morph targets, where the kind has them. Kinds that "
+                "are made\n"
+                "of other meshes of a level are not written.\n\n"
+                "Examples:\n"
+                "  limn make person --set height=1.8 --set seed=7 -o person.glb\n"
+                "  limn make person --parts --set hair=bun --set legs=skirt -o dressed.glb\n"
+                "  limn make teapot -o teapot.glb\n"
+                "  limn view person.glb");
+    return {app, [&options] { return run_make(options); }};
+}
+
 Command add_speak(CLI::App& program, SpeakOptions& options) {
     CLI::App* app = program.add_subcommand("speak", "Make a face speak a text, with audio");
     app->add_option("text", options.text, "what it says, in English")->required();
@@ -646,6 +670,7 @@ struct AllOptions {
     BakeOptions bake;
     std::string info_file;
     ImportOptions import_options;
+    MakeOptions make;
     SpeakOptions speak;
     std::vector<std::string> show;
     std::string checked;
@@ -665,6 +690,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_bake(program, options.bake),
         add_info(program, options.info_file),
         add_import(program, options.import_options),
+        add_make(program, options.make),
         add_speak(program, options.speak),
         add_levels(program),
         add_shows(program, options.show),
