@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace limn::person_test {
 
@@ -88,6 +89,36 @@ Vec3 rest_point(const SkeletonData& skeleton, std::int32_t joint) {
         p += skeleton.rest.translations[static_cast<std::size_t>(joint)];
     }
     return p;
+}
+
+/// `mesh` in the first pose of a clip, by linear blend skinning; rest rotations are the identity.
+MeshData posed(const MeshData& mesh, const SkeletonData& skeleton, const ClipData& clip) {
+    std::vector<Vec3> translations = skeleton.rest.translations;
+    std::vector<Quat> rotations = skeleton.rest.rotations;
+    for (const ClipSheet& sheet : clip.sheets) {
+        for (std::size_t i = 0; i < sheet.rotating.size(); ++i) {
+            rotations[sheet.rotating[i]] = sheet.rotations[i];
+        }
+        for (std::size_t i = 0; i < sheet.translating.size(); ++i) {
+            translations[sheet.translating[i]] = sheet.translations[i];
+        }
+    }
+    for (std::size_t j = 1; j < rotations.size(); ++j) {
+        const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
+        translations[j] = translations[parent] + rotations[parent] * translations[j];
+        rotations[j] = rotations[parent] * rotations[j];
+    }
+    MeshData moved = mesh;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        Vec3 sum(0);
+        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+            const std::uint16_t j = mesh.skin.joints[i];
+            const Vec3 from = mesh.positions[v] - rest_point(skeleton, j);
+            sum += mesh.skin.weights[i] * (translations[j] + rotations[j] * from);
+        }
+        moved.positions[v] = sum;
+    }
+    return moved;
 }
 
 std::size_t joint_called(const SkeletonData& skeleton, const std::string& name) {
@@ -221,6 +252,28 @@ TEST_CASE(
         // Palms face the thighs: fingers bend toward the middle of the body.
         const Vec3 bends = moves((s + "Middle2").c_str(), (s + "Middle3").c_str());
         CHECK(bends.x * (s == "Left" ? 1.0f : -1.0f) < 0);
+    }
+}
+
+TEST_CASE(
+    "person: arms that hang or are raised, a seat, a squat and fists keep the volume of a body"
+    * technique("char.skin-bone-offset")) {
+    for (const PersonShape& shape : kPeople) {
+        const MeshRig rig = make_person_rig(shape);
+        for (const PersonPart part : {PersonPart::Skin, PersonPart::Shirt, PersonPart::Trousers}) {
+            const MeshData mesh = make_person(with_part(shape, part));
+            const double volume = signed_volume(mesh);
+            for (const ClipData& clip : rig.clips) {
+                CAPTURE(shape.seed);
+                CAPTURE(static_cast<int>(part));
+                CAPTURE(clip.name);
+                const MeshData moved = posed(mesh, rig.skeleton, clip);
+                // A skirt is drawn over the knees.
+                const bool skirt =
+                    part == PersonPart::Trousers && shape.legs == PersonLegwear::Skirt;
+                CHECK(signed_volume(moved) == near(volume).epsilon(skirt ? 0.35 : 0.15));
+            }
+        }
     }
 }
 
