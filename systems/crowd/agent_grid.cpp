@@ -20,8 +20,9 @@ void build_agent_grid(
     cell_of.resize(points.size());
     grid.begins.assign(cells + 1, 0);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto column = static_cast<std::uint32_t>(grid_coordinate(points[i].x, cell)) & mask;
-        const auto row = static_cast<std::uint32_t>(grid_coordinate(points[i].y, cell)) & mask;
+        const auto column =
+            static_cast<std::uint32_t>(grid_coordinate(points[i].x, 1 / cell)) & mask;
+        const auto row = static_cast<std::uint32_t>(grid_coordinate(points[i].y, 1 / cell)) & mask;
         cell_of[i] = row * grid.columns + column;
         ++grid.begins[cell_of[i] + 1];
     }

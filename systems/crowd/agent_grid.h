@@ -33,8 +33,11 @@ struct AgentGrid {
 void build_agent_grid(
     std::span<const Vec2> points, std::span<const std::uint64_t> keys, float cell, AgentGrid& grid);
 
-[[nodiscard]] inline std::int32_t grid_coordinate(float x, float cell) {
-    return static_cast<std::int32_t>(std::floor(std::clamp(x / cell, -1e6f, 1e6f)));
+/// Rounds down, without std::floor, which is a call where the compiler may not use SSE 4.1.
+[[nodiscard]] inline std::int32_t grid_coordinate(float x, float cells_per_meter) {
+    const float cells = std::clamp(x * cells_per_meter, -1e6f, 1e6f);
+    const auto toward_zero = static_cast<std::int32_t>(cells);
+    return toward_zero - (static_cast<float>(toward_zero) > cells ? 1 : 0);
 }
 
 /// Calls visit(SlotRun) for the cells that a square of `reach` [m] to each side of a point touches;
@@ -42,9 +45,10 @@ void build_agent_grid(
 template <typename Visit>
 void each_run(const AgentGrid& grid, const Vec2& point, float reach, const Visit& visit) {
     const std::uint32_t mask = grid.columns - 1;
+    const float per_meter = 1 / grid.cell;
     const auto range = [&](float x, std::uint32_t& first, std::uint32_t& count) {
-        const std::int32_t low = grid_coordinate(x - reach, grid.cell);
-        const std::int32_t high = grid_coordinate(x + reach, grid.cell);
+        const std::int32_t low = grid_coordinate(x - reach, per_meter);
+        const std::int32_t high = grid_coordinate(x + reach, per_meter);
         first = static_cast<std::uint32_t>(low) & mask;
         count = std::min(static_cast<std::uint32_t>(high - low) + 1, grid.columns);
     };

@@ -12,6 +12,8 @@
 #include <limits>
 #include <utility>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 

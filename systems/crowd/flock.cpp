@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 

@@ -11,6 +11,8 @@
 #include <limits>
 #include <utility>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 

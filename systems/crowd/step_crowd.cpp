@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 
+// Techniques: char.flock
+
 namespace limn {
 namespace {
 
@@ -72,38 +74,57 @@ Vec2 preferred_velocity(const CrowdWalker& walker) {
         turn.y * walker.wanted.x + turn.x * walker.wanted.y};
 }
 
-NearestWalkers find_near_walkers(const WalkerScratch& scratch, std::size_t slot, float reach) {
-    NearestWalkers nearest;
-    const CrowdWalker& walker = scratch.slots[slot];
+/// Calls visit(slot, distance squared) for the others in the cells within `reach`.
+template <typename Visit>
+void each_near(const WalkerScratch& scratch, std::size_t slot, float reach, const Visit& visit) {
+    const Vec2 position = scratch.slots[slot].position;
     const float* const xs = scratch.x.data();
     const float* const ys = scratch.y.data();
-    float limit2 = square(reach);
-    each_run(scratch.grid, walker.position, reach, [&](SlotRun run) {
+    each_run(scratch.grid, position, reach, [&](SlotRun run) {
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            const float distance2 =
-                square(xs[i] - walker.position.x) + square(ys[i] - walker.position.y);
-            if (distance2 <= limit2 && i != slot) {
-                nearest.add({distance2, i}, scratch.slots);
-                if (nearest.is_full()) {
-                    limit2 = nearest.found[kMaxNeighbors - 1].distance2;
-                }
+            const float distance2 = square(xs[i] - position.x) + square(ys[i] - position.y);
+            if (i != slot) {
+                visit(i, distance2);
+            }
+        }
+    });
+}
+
+NearestWalkers find_near_walkers(const WalkerScratch& scratch, std::size_t slot, float reach) {
+    NearestWalkers nearest;
+    float limit2 = square(reach);
+    each_near(scratch, slot, reach, [&](std::uint32_t i, float distance2) {
+        if (distance2 <= limit2) {
+            nearest.add({distance2, i}, scratch.slots);
+            if (nearest.is_full()) {
+                limit2 = nearest.found[kMaxNeighbors - 1].distance2;
             }
         }
     });
     return nearest;
 }
 
+/// In dense crowds the nearest are in the cells around.
+NearestWalkers find_neighbors(const WalkerScratch& scratch, std::size_t slot) {
+    const CrowdWalker& walker = scratch.slots[slot];
+    std::uint32_t around = 0;
+    each_run(scratch.grid, walker.position, kCellSize, [&](SlotRun run) {
+        around += run.end - run.begin;
+    });
+    if (around > 2 * kMaxNeighbors && walker.range > kCellSize) {
+        const NearestWalkers nearest = find_near_walkers(scratch, slot, kCellSize);
+        if (nearest.is_full()) {
+            return nearest;
+        }
+    }
+    return find_near_walkers(scratch, slot, walker.range);
+}
+
 Vec2 choose_velocity(
     const WalkerScratch& scratch, std::size_t slot, std::span<const CrowdBarrier> barriers,
     float dt) {
     const CrowdWalker& walker = scratch.slots[slot];
-    NearestWalkers nearest;
-    if (walker.range > kCellSize) {  // in dense crowds, the nearest are in the cells around
-        nearest = find_near_walkers(scratch, slot, kCellSize);
-    }
-    if (!nearest.is_full()) {
-        nearest = find_near_walkers(scratch, slot, walker.range);
-    }
+    const NearestWalkers nearest = find_neighbors(scratch, slot);
     std::array<VelocityPlane, kMaxVelocityPlanes> planes;
     std::size_t count = 0;
     for (const CrowdBarrier& barrier : barriers) {
@@ -117,16 +138,19 @@ Vec2 choose_velocity(
     const std::size_t walls = count;
     const float weight = standing_priority(walker);
     for (std::size_t i = 0; i < nearest.count; ++i) {
-        const CrowdWalker& other = scratch.slots[nearest.found[i].slot];
+        const Neighbor& neighbor = nearest.found[i];
+        const CrowdWalker& other = scratch.slots[neighbor.slot];
         const float other_weight = standing_priority(other);
+        const bool overlaps =
+            neighbor.distance2 < square(walker.radius + other.radius + kPersonalSpace);
         planes[count++] = avoid_walker(
             {walker.position, walker.velocity, walker.radius + kPersonalSpace},
             {other.position, other.velocity, other.radius},
             {.horizon = std::max(walker.horizon, dt),
              .contact_time = std::max(kContactTime, dt),
-             .share = other_weight / (weight + other_weight),
+             .share = weight == other_weight ? 0.5f : other_weight / (weight + other_weight),
              .side = walker.side == other.side ? walker.side : 0.0f,
-             .apart = parting_direction(walker.key, other.key)});
+             .apart = overlaps ? parting_direction(walker.key, other.key) : Vec2(1, 0)});
     }
     return solve_velocity(
         {planes.data(), count}, walls, preferred_velocity(walker), walker.max_speed);
@@ -142,16 +166,10 @@ void list_contacts(
         contacts.begins.push_back(static_cast<std::uint32_t>(contacts.others.size()));
         const CrowdWalker& walker = scratch.slots[slot];
         const float reach = walker.radius + max_radius + 2 * max_move;
-        each_run(scratch.grid, walker.position, reach, [&](SlotRun run) {
-            for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                const float distance2 = square(scratch.x[i] - walker.position.x)
-                                        + square(scratch.y[i] - walker.position.y);
-                if (distance2 < square(reach) && i != slot) {
-                    const float near = walker.radius + scratch.slots[i].radius + 2 * max_move;
-                    if (distance2 < square(near)) {
-                        contacts.others.push_back(i);
-                    }
-                }
+        each_near(scratch, slot, reach, [&](std::uint32_t i, float distance2) {
+            if (distance2 < square(reach)
+                && distance2 < square(walker.radius + scratch.slots[i].radius + 2 * max_move)) {
+                contacts.others.push_back(i);
             }
         });
     }
@@ -201,6 +219,7 @@ Vec2 push_from_contacts(
         const float inside = walker.radius - hit.distance;
         if (inside > 0) {
             moved -= inside * hit.toward;
+            deepest = std::max(deepest, inside);
         }
     }
     const Vec2 move = moved - walker.position;
@@ -232,11 +251,12 @@ void each_slot_range(std::size_t count, const Body& body) {
     parallel_for(count, kCrowdGrain, body);
 }
 
-void push_out_overlaps(
+/// Whether nobody overlaps afterwards; some may where it takes more passes.
+bool push_out_overlaps(
     WalkerScratch& scratch, std::span<const CrowdBarrier> barriers, float max_move) {
     const std::size_t count = scratch.slots.size();
     scratch.passes = 0;
-    for (bool deep = true; deep && scratch.passes < kMaxPushes; ++scratch.passes) {
+    while (scratch.passes < kMaxPushes) {
         each_slot_range(count, [&](std::size_t begin, std::size_t end) {
             float deepest = 0;
             for (std::size_t i = begin; i < end; ++i) {
@@ -244,9 +264,13 @@ void push_out_overlaps(
             }
             scratch.deepest[begin / kCrowdGrain] = deepest;
         });
+        if (*std::max_element(scratch.deepest.begin(), scratch.deepest.end()) <= 0) {
+            return true;
+        }
         scratch.moved.swap(scratch.pushed);
-        deep = *std::max_element(scratch.deepest.begin(), scratch.deepest.end()) > 0;
+        ++scratch.passes;
     }
+    return false;
 }
 
 /// Who newly overlaps another stays where it was; so may then others, until all is well.
@@ -255,7 +279,6 @@ void hold_back(WalkerScratch& scratch) {
     scratch.held.assign(count, 0);
     thread_local std::vector<std::uint8_t> next_memory;
     std::vector<std::uint8_t>& next = next_memory;
-    scratch.holds = 0;
     for (bool changes = true; changes;) {
         next.resize(count);
         each_slot_range(count, [&](std::size_t begin, std::size_t end) {
@@ -344,8 +367,10 @@ void step_crowd(
         list_contacts(
             scratch, begin, end, max_radius, max_move, scratch.contacts[begin / kCrowdGrain]);
     });
-    push_out_overlaps(scratch, barriers, max_move);
-    hold_back(scratch);
+    scratch.holds = 0;
+    if (!push_out_overlaps(scratch, barriers, max_move)) {
+        hold_back(scratch);
+    }
     for (std::size_t i = 0; i < count; ++i) {
         CrowdWalker& walker = walkers[scratch.grid.order[i]];
         Vec2 velocity = (scratch.moved[i] - walker.position) / dt;

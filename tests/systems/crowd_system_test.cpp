@@ -8,6 +8,7 @@
 #include "systems/update_world.h"
 #include "tests/near.h"
 #include "tests/support.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -189,7 +190,9 @@ TEST_CASE("crowd system: feet keep step: clips advance by the distance over the 
     CHECK(time > 0.9f);
 }
 
-TEST_CASE("crowd system: the same bits on 1, 2, 3 and 7 threads, and from a snapshot") {
+TEST_CASE(
+    "crowd system: the same bits on 1, 2, 3 and 7 threads, and from a snapshot"
+    * technique("char.flock")) {
     register_all_components();
     const std::vector<std::uint64_t> expected = plaza_hashes(1);
     for (const int threads : {2, 3, 7}) {

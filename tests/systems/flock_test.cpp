@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "systems/crowd/flock.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -77,7 +78,8 @@ bool same_bits(const FlockMember& a, const FlockMember& b) {
 
 }  // namespace
 
-TEST_CASE("flock: rules take precedence until the acceleration is spent") {
+TEST_CASE(
+    "flock: rules take precedence until the acceleration is spent" * technique("char.flock")) {
     const FlockRules rules = {Vec3(3, 0, 0), Vec3(0, 4, 0), Vec3(0, 0, 5), Vec3(1, 1, 1)};
     CHECK(allocate_acceleration(rules, 2) == Vec3(2, 0, 0));  // a1 alone, truncated
     CHECK(allocate_acceleration(rules, 3) == Vec3(3, 0, 0));
@@ -99,7 +101,7 @@ TEST_CASE("flock: rules take precedence until the acceleration is spent") {
     CHECK(std::ranges::equal(alone, all, same_bits));
 }
 
-TEST_CASE("flock: the rules of two boids by hand") {
+TEST_CASE("flock: the rules of two boids by hand" * technique("char.flock")) {
     const std::vector<FlockMember> boids = {
         {.position = {0, 0, 0}, .velocity = {1, 0, 0}, .key = 1},
         {.position = {0, 0, 2}, .velocity = {0, 3, 0}, .key = 2}};
@@ -119,7 +121,8 @@ TEST_CASE("flock: the rules of two boids by hand") {
     CHECK(blind[1] == Vec3(0));
 }
 
-TEST_CASE("flock: two boids within the separation part, coincident ones too") {
+TEST_CASE(
+    "flock: two boids within the separation part, coincident ones too" * technique("char.flock")) {
     for (const float distance : {0.5f, 0.0f}) {
         std::vector<FlockMember> boids = {
             {.position = {0, 1, 0}, .key = 1}, {.position = {distance, 1, 0}, .key = 2}};
@@ -135,7 +138,9 @@ TEST_CASE("flock: two boids within the separation part, coincident ones too") {
     }
 }
 
-TEST_CASE("flock: with matching alone all take on the mean velocity, and it is conserved") {
+TEST_CASE(
+    "flock: with matching alone all take on the mean velocity, and it is conserved"
+    * technique("char.flock")) {
     std::vector<FlockMember> boids = make_boids(40, 3, 2);
     const Vec3 mean = mean_velocity(boids);
     run(only(0, 1, 0), boids, 600);
@@ -145,7 +150,7 @@ TEST_CASE("flock: with matching alone all take on the mean velocity, and it is c
     }
 }
 
-TEST_CASE("flock: with centering alone a flock at rest does not grow") {
+TEST_CASE("flock: with centering alone a flock at rest does not grow" * technique("char.flock")) {
     std::vector<FlockMember> boids = make_boids(40, 5, 3);
     for (FlockMember& boid : boids) {
         boid.velocity = Vec3(0);
@@ -160,7 +165,9 @@ TEST_CASE("flock: with centering alone a flock at rest does not grow") {
     CHECK(smallest < 0.5f * radius);
 }
 
-TEST_CASE("flock: the order of boids and the number of threads change nothing") {
+TEST_CASE(
+    "flock: the order of boids and the number of threads change nothing"
+    * technique("char.flock")) {
     const FlockParams params;
     std::vector<FlockMember> boids = make_boids(700, 12, 4);
     std::vector<FlockMember> shuffled = boids;

@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "systems/crowd/orca.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -56,7 +57,8 @@ std::vector<VelocityPlane> random_planes(Random& random, std::size_t count, floa
 }  // namespace
 
 TEST_CASE(
-    "ORCA: the optimum of 10,000 random programs is as near as brute force over all corners") {
+    "ORCA: the optimum of 10,000 random programs is as near as brute force over all corners"
+    * technique("char.flock")) {
     Random random(1, 0, 0, 0);
     int feasible = 0;
     for (int i = 0; i < 10000; ++i) {
@@ -76,7 +78,9 @@ TEST_CASE(
     CHECK(feasible < 9000);
 }
 
-TEST_CASE("ORCA: where no velocity meets all half-planes, the largest excess is the least") {
+TEST_CASE(
+    "ORCA: where no velocity meets all half-planes, the largest excess is the least"
+    * technique("char.flock")) {
     Random random(2, 0, 0, 0);
     int infeasible = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -103,7 +107,9 @@ TEST_CASE("ORCA: hard half-planes are met where those of walkers cannot all be")
     }
 }
 
-TEST_CASE("ORCA: two walkers that both take their half do not touch within the horizon") {
+TEST_CASE(
+    "ORCA: two walkers that both take their half do not touch within the horizon"
+    * technique("char.flock")) {
     Random random(4, 0, 0, 0);
     int evaded = 0;
     for (int i = 0; i < 2000; ++i) {

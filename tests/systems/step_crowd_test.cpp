@@ -3,6 +3,7 @@
 #include "ecs/base/rng.h"
 #include "systems/crowd/step_crowd.h"
 #include "tests/near.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -108,7 +109,9 @@ bool same_bits(const CrowdWalker& a, const CrowdWalker& b) {
 
 }  // namespace
 
-TEST_CASE("crowd: two walkers head-on pass on the side they prefer, without touching") {
+TEST_CASE(
+    "crowd: two walkers head-on pass on the side they prefer, without touching"
+    * technique("char.flock")) {
     for (const float side : {1.0f, -1.0f}) {
         Crowd crowd;
         crowd.add({-6, 0}, {6, 0}, side);
@@ -128,7 +131,8 @@ TEST_CASE("crowd: two walkers head-on pass on the side they prefer, without touc
 }
 
 TEST_CASE(
-    "crowd: nobody overlaps, and all arrive: random goals, and rings that meet in the center") {
+    "crowd: nobody overlaps, and all arrive: random goals, and rings that meet in the center"
+    * technique("char.flock")) {
     Crowd mixed = make_mixed(300, 1, 5);
     for (int i = 0; i < 600; ++i) {
         mixed.step();
@@ -162,7 +166,7 @@ TEST_CASE("crowd: who stands makes way, and comes back") {
     CHECK(crowd.walkers[0].detour == 0);
 }
 
-TEST_CASE("crowd: the order of the walkers changes nothing") {
+TEST_CASE("crowd: the order of the walkers changes nothing" * technique("char.flock")) {
     Crowd crowd = make_mixed(200, 1, 9);
     Crowd shuffled = crowd;
     for (std::size_t i = 0; i < shuffled.walkers.size(); ++i) {

@@ -69,6 +69,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.crowd-script", "walk cycles baked for crowds"},
     {"char.elbow-circle", "elbow swivel, pole vector, swivel angle of a 7-DOF arm"},
     {"char.fk-function", "forward kinematics, joint space, degrees of freedom"},
+    {"char.flock", "flocking, boids, herds, crowds, ORCA, flow fields"},
     {"char.foot-flight", "foot flight curve, gait"},
     {"char.ghost-view", "ghosts of a motion, joint trails, joint angle curves"},
     {"char.htr-format", "HTR motion capture files"},
