@@ -13,7 +13,7 @@ namespace limn {
 // Ways to a goal for any number of walkers: the length of the shortest way from each cell of a grid
 // around the barriers, |grad length| = 1, by fast marching (J. Sethian, "A fast marching level set
 // method for monotonically advancing fronts", PNAS 1996), first order; against the gradient leads
-// the way. Lengths are up to some 5 % too long, most in diagonal directions; gaps narrower than a
+// the way. Lengths are up to some 8 % too long, most in diagonal directions; gaps narrower than a
 // cell may be missed.
 
 /// Cells of a rectangle; cell (i, j) has index j * columns + i and the center
