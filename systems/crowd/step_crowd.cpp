@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 // Techniques: char.flock
@@ -34,31 +35,30 @@ constexpr std::uint64_t kJitterFrames = 32;
 constexpr float kSettling = 4;           // distance to the goal within which detours shrink [m]
 constexpr float kStandingShare = 0.25f;  // priority of those that do not want to move
 
-/// A neighbor that a walker avoids.
-struct Neighbor {
-    float distance2 = 0;
-    std::uint32_t slot = 0;
-};
-
-/// The nearest ones, ascending; equally near ones by key.
+/// The nearest walkers, ascending: the bits of the distance squared, which order as it does, above
+/// the slot, so that equally near ones are in the order of the grid.
 struct NearestWalkers {
-    std::array<Neighbor, kMaxNeighbors> found;
-    std::size_t count = 0;
+    std::array<std::uint64_t, kMaxNeighbors> found;
+    std::size_t count = 0;  ///< all that were added
 
-    [[nodiscard]] bool is_full() const { return count == kMaxNeighbors; }
-    void add(const Neighbor& neighbor, std::span<const CrowdWalker> slots) {
-        const auto before = [&](const Neighbor& a, const Neighbor& b) {
-            return a.distance2 < b.distance2
-                   || (a.distance2 == b.distance2 && slots[a.slot].key < slots[b.slot].key);
-        };
-        if (is_full() && !before(neighbor, found[count - 1])) {
-            return;
+    NearestWalkers() { found.fill(~std::uint64_t{0}); }
+    [[nodiscard]] bool is_full() const { return count >= kMaxNeighbors; }
+    [[nodiscard]] std::size_t size() const { return std::min(count, kMaxNeighbors); }
+    [[nodiscard]] std::uint32_t slot(std::size_t i) const {
+        return static_cast<std::uint32_t>(found[i]);
+    }
+    [[nodiscard]] float distance2(std::size_t i) const {
+        return std::bit_cast<float>(static_cast<std::uint32_t>(found[i] >> 32));
+    }
+    /// Without branches, which would be mispredicted.
+    void add(std::uint32_t slot, float distance2) {
+        std::uint64_t moving = std::uint64_t{std::bit_cast<std::uint32_t>(distance2)} << 32 | slot;
+        for (std::uint64_t& kept : found) {
+            const std::uint64_t least = std::min(kept, moving);
+            moving = std::max(kept, moving);
+            kept = least;
         }
-        std::size_t i = is_full() ? count - 1 : count++;
-        for (; i > 0 && before(neighbor, found[i - 1]); --i) {
-            found[i] = found[i - 1];
-        }
-        found[i] = neighbor;
+        ++count;
     }
 };
 
@@ -92,15 +92,26 @@ void each_near(const WalkerScratch& scratch, std::size_t slot, float reach, cons
 
 NearestWalkers find_near_walkers(const WalkerScratch& scratch, std::size_t slot, float reach) {
     NearestWalkers nearest;
-    float limit2 = square(reach);
+    const float limit2 = square(reach);
+    constexpr std::size_t kBatch = 64;
+    std::array<std::uint32_t, kBatch> slots;
+    std::array<float, kBatch> distances2;
+    std::size_t count = 0;
+    const auto add_batch = [&] {
+        for (std::size_t i = 0; i < count; ++i) {
+            nearest.add(slots[i], distances2[i]);
+        }
+        count = 0;
+    };
     each_near(scratch, slot, reach, [&](std::uint32_t i, float distance2) {
-        if (distance2 <= limit2) {
-            nearest.add({distance2, i}, scratch.slots);
-            if (nearest.is_full()) {
-                limit2 = nearest.found[kMaxNeighbors - 1].distance2;
-            }
+        slots[count] = i;
+        distances2[count] = distance2;
+        count += distance2 <= limit2 ? 1 : 0;
+        if (count == kBatch) {
+            add_batch();
         }
     });
+    add_batch();
     return nearest;
 }
 
@@ -137,12 +148,11 @@ Vec2 choose_velocity(
     }
     const std::size_t walls = count;
     const float weight = standing_priority(walker);
-    for (std::size_t i = 0; i < nearest.count; ++i) {
-        const Neighbor& neighbor = nearest.found[i];
-        const CrowdWalker& other = scratch.slots[neighbor.slot];
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const CrowdWalker& other = scratch.slots[nearest.slot(i)];
         const float other_weight = standing_priority(other);
         const bool overlaps =
-            neighbor.distance2 < square(walker.radius + other.radius + kPersonalSpace);
+            nearest.distance2(i) < square(walker.radius + other.radius + kPersonalSpace);
         planes[count++] = avoid_walker(
             {walker.position, walker.velocity, walker.radius + kPersonalSpace},
             {other.position, other.velocity, other.radius},
