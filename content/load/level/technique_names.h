@@ -67,6 +67,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.bvh-format", "BVH motion capture files"},
     {"char.clip-layout", "clip data layout, animation clip"},
     {"char.crowd-script", "walk cycles baked for crowds"},
+    {"char.dynamics", "ragdoll, rigid bodies on joints, XPBD, falling characters"},
     {"char.elbow-circle", "elbow swivel, pole vector, swivel angle of a 7-DOF arm"},
     {"char.fk-function", "forward kinematics, joint space, degrees of freedom"},
     {"char.flock", "flocking, boids, herds, crowds, ORCA, flow fields"},
