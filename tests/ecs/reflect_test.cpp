@@ -197,6 +197,7 @@ TEST_CASE("reflect: every type that a component header describes is registered, 
     const auto is_part = [&](const std::string& type) {
         return type == "PathShape" || type == "FurrowStyle" || type == "FurrowArrow"
                || headers.find("<" + type + ">") != std::string::npos
+               || headers.find("<" + type + ",") != std::string::npos  // std::array
                || headers.find("\n    " + type + " ") != std::string::npos;
     };
     int described = 0;
