@@ -105,6 +105,10 @@ std::optional<GroundHit> find_height(const HeightField& field, float x, float z)
 }
 
 std::vector<PlacedGround> place_grounds(const GroundQueries& queries) {
+    std::vector<PlacedGround> placed;
+    if (!queries.assets || !queries.meshes) {
+        return placed;
+    }
     const Placements placements(queries.transforms, queries.parents);
     const Assets& assets = *queries.assets;
     WalkableMeshes& meshes = *queries.meshes;
@@ -115,7 +119,6 @@ std::vector<PlacedGround> place_grounds(const GroundQueries& queries) {
                 (void)find_walkable_mesh(assets, instance->mesh, meshes);
             }
         });
-    std::vector<PlacedGround> placed;
     queries.grounds.each([&](Entity entity, const Walkable&, const MeshInstance* instance,
                              const HeightField* field) {
         PlacedGround ground = {entity, placements.world(entity), {}, nullptr, field};
@@ -169,6 +172,36 @@ float find_free_fraction(std::span<const PlacedGround> grounds, const Segment& s
         }
     }
     return free;
+}
+
+Vec3 find_way_out(std::span<const PlacedGround> grounds, const Vec3& point, float reach) {
+    for (const PlacedGround& ground : grounds) {
+        if (ground.mesh == nullptr) {
+            continue;
+        }
+        Vec3 shortest(0);
+        float least = 2;
+        bool is_inside = true;
+        for (const Vec3& way : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+            const Segment local = {
+                transform_point(ground.local, point),
+                transform_point(ground.local, point + reach * way)};
+            const MeshHit hit = first_hit(*ground.mesh, local);
+            is_inside =
+                hit.triangle != kNoTriangle && glm::dot(hit.normal, local.to - local.from) > 0;
+            if (!is_inside) {
+                break;
+            }
+            if (hit.fraction < least) {
+                least = hit.fraction;
+                shortest = hit.fraction * reach * way;
+            }
+        }
+        if (is_inside) {
+            return shortest;
+        }
+    }
+    return Vec3(0);
 }
 
 std::optional<GroundContact>

@@ -67,8 +67,8 @@ struct GroundQueries {
     Query<const Walkable, Optional<const MeshInstance>, Optional<const HeightField>> grounds;
     Query<const Transform> transforms;
     Query<const Parent> parents;
-    Res<const Assets> assets;
-    Res<WalkableMeshes> meshes;
+    OptionalRes<const Assets> assets;
+    OptionalRes<WalkableMeshes> meshes;
 };
 
 template <>
@@ -76,10 +76,11 @@ struct SystemParam<GroundQueries>
     : ParamGroup<
           GroundQueries,
           Query<const Walkable, Optional<const MeshInstance>, Optional<const HeightField>>,
-          Query<const Transform>, Query<const Parent>, Res<const Assets>, Res<WalkableMeshes>> {};
+          Query<const Transform>, Query<const Parent>, OptionalRes<const Assets>,
+          OptionalRes<WalkableMeshes>> {};
 
-/// All grounds, in world order. Builds the hierarchies of new meshes, whose pointers are valid in
-/// this step. A ground whose matrix has no inverse is left out.
+/// All grounds, in world order; none without both resources. Builds the hierarchies of new meshes,
+/// whose pointers are valid in this step. A ground whose matrix has no inverse is left out.
 [[nodiscard]] std::vector<PlacedGround> place_grounds(const GroundQueries& queries);
 
 [[nodiscard]] const PlacedGround* find_placed(std::span<const PlacedGround> grounds, Entity entity);
@@ -89,6 +90,11 @@ struct SystemParam<GroundQueries>
 /// Fraction of a segment before it hits the mesh of a ground; 1: none.
 [[nodiscard]] float
 find_free_fraction(std::span<const PlacedGround> grounds, const Segment& segment);
+
+/// The shortest horizontal way out of a closed mesh that contains a point: from inside, the first
+/// triangles in four directions are seen from behind, within `reach` [m]. 0: it is in none.
+[[nodiscard]] Vec3
+find_way_out(std::span<const PlacedGround> grounds, const Vec3& point, float reach);
 
 /// The deepest contact of a capsule with the triangles of meshes, and with what they belong to.
 struct GroundContact {

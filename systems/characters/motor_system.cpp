@@ -21,7 +21,8 @@ constexpr float kStandFrom = 0.66f;      // and stands again from here
 constexpr float kFloatDepth = 0.84f;     // of the soles while swimming
 constexpr float kBuoyancy = 3.0f;        // rate at which it rises to that depth [1/s]
 constexpr float kContactSkin = 1e-4f;    // depth of contacts that is left [m]
-constexpr int kMaxParts = 64;            // of a step
+constexpr int kMaxParts = 512;           // of a step
+constexpr float kThickest = 2.0f;        // wall out of which it finds a way [m]
 constexpr int kMaxContacts = 6;          // in a part
 
 Vec3 level_part(const Vec3& v) {
@@ -217,6 +218,17 @@ void leave_solids(const Surroundings& around, MotorBody& body) {
     }
 }
 
+/// One that was put into a wall comes out on the nearest side.
+void leave_inside(
+    const CharacterMotor& motor, const Surroundings& around, std::span<const PlacedGround> grounds,
+    MotorBody& body) {
+    const Vec3 middle = body.transform.position + Vec3(0, 0.5f * motor.height, 0);
+    const Vec3 out = find_way_out(grounds, middle, kThickest);
+    if (out != Vec3(0)) {
+        body.transform.position += out + around.radius() * normalize_or(out, Vec3(0));
+    }
+}
+
 /// Puts it on the ground below, if it is to stand on it. `dt`: of this part of the step.
 void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
     MotorState& state = body.state;
@@ -282,6 +294,7 @@ MotorBody step_motor(
     next.jumped = false;
     const Surroundings around(motor, grounds);
     ride(grounds, next);
+    leave_inside(motor, around, grounds, next);
     const Wetness water = find_wetness(waters, next.transform.position);
     next.state.depth = water.depth;
     next.state.air_time += dt;

@@ -54,7 +54,7 @@ void add_foot_contacts(
 void update_foot_contacts(
     Query<const Skeleton, const FootPlant, const Pose, FootContacts> characters,
     GroundQueries grounds, OptionalRes<const FrameTime> time) {
-    if (characters.empty()) {
+    if (characters.empty() || !grounds.assets) {
         return;
     }
     const Placements placements(grounds.transforms, grounds.parents);
