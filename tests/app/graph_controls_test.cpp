@@ -28,7 +28,7 @@ TEST_CASE(
         ClipData clip;
         clip.name = name;
         clip.duration = 1;
-        clip.sheets.push_back({.times = {0, 1}});
+        clip.sheets.emplace_back().times = {0, 1};
         assets.clips.push_back(clip);
     }
     MotionGraphData graph;

@@ -270,17 +270,20 @@ TEST_CASE_FIXTURE(
         TextureSlot slot;
     };
     std::vector<Options> all = {
-        {"nearest", {.nearest = true, .minify = Minify::Nearest}},
-        {"linear", {.minify = Minify::Linear}},
-        {"one texel of a level", {.minify = Minify::NearestMipNearest}},
-        {"four texels of a level", {.minify = Minify::LinearMipNearest}},
-        {"a texel of two levels", {.minify = Minify::NearestMipLinear}},
-        {"trilinear", {.minify = Minify::LinearMipLinear}},
-        {"sharper", {.minify = Minify::LinearMipNearest, .lod_bias = -1.25f}},
-        {"blurred", {.minify = Minify::LinearMipNearest, .lod_bias = 1}},
-        {"level 1", {.minify = Minify::LinearMipNearest, .lod_range = {1, 1}}},
+        {"nearest", {.image = {}, .nearest = true, .minify = Minify::Nearest}},
+        {"linear", {.image = {}, .minify = Minify::Linear}},
+        {"one texel of a level", {.image = {}, .minify = Minify::NearestMipNearest}},
+        {"four texels of a level", {.image = {}, .minify = Minify::LinearMipNearest}},
+        {"a texel of two levels", {.image = {}, .minify = Minify::NearestMipLinear}},
+        {"trilinear", {.image = {}, .minify = Minify::LinearMipLinear}},
+        {"sharper", {.image = {}, .minify = Minify::LinearMipNearest, .lod_bias = -1.25f}},
+        {"blurred", {.image = {}, .minify = Minify::LinearMipNearest, .lod_bias = 1}},
+        {"level 1", {.image = {}, .minify = Minify::LinearMipNearest, .lod_range = {1, 1}}},
         {"mirrored",
-         {.wrap_u = Wrap::Mirror, .wrap_v = Wrap::Clamp, .minify = Minify::NearestMipNearest}}};
+         {.image = {},
+          .wrap_u = Wrap::Mirror,
+          .wrap_v = Wrap::Clamp,
+          .minify = Minify::NearestMipNearest}}};
     for (Options& one : all) {
         CAPTURE(one.name);
         for (const float scale : {1.0f, 4.2f}) {
@@ -298,11 +301,11 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     SampledPlate,
     "sampling: the last level alone is the mean of the image" * technique("tex.sampling")) {
-    const gpu::FloatImage image =
-        with({.minify = Minify::LinearMipLinear, .lod_range = {3, 3}}, 16);
+    const gpu::FloatImage drawn =
+        with({.image = {}, .minify = Minify::LinearMipLinear, .lod_range = {3, 3}}, 16);
     for (int x = 0; x < 16; ++x) {
         CHECK(
-            static_cast<double>(image.at(x, 7, 0))
+            static_cast<double>(drawn.at(x, 7, 0))
             == near(texels.levels[3].texels[0].x).epsilon(4e-3));
     }
 }
@@ -324,7 +327,11 @@ TEST_CASE_FIXTURE(
     }
     const auto contrast = [&](float anisotropy) {
         const gpu::FloatImage found = with(
-            {.minify = Minify::LinearMipLinear, .scale = {2, 16}, .anisotropy = anisotropy}, 16);
+            {.image = {},
+             .minify = Minify::LinearMipLinear,
+             .scale = {2, 16},
+             .anisotropy = anisotropy},
+            16);
         float lowest = 1;
         float highest = 0;
         for (int x = 0; x < 16; ++x) {
