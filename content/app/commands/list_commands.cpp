@@ -9,6 +9,7 @@
 #include "content/make/patterns/patterns.h"
 #include "ecs/any_component.h"
 #include "ecs/base/text.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/path.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"
@@ -200,8 +201,10 @@ std::vector<ListedTypes> list_types() {
     return {
         {"Components: of an entity", chosen(all_components(), false)},
         {"Resources: one of a kind, under \"resources\"", chosen(all_resources(), false)},
-        {"Under \"materials\" and \"paths\"",
-         {{"material", &component_info<Material>()}, {"path", &component_info<PathShape>()}}},
+        {"Under \"materials\", \"paths\" and \"motion_graphs\"",
+         {{"material", &component_info<Material>()},
+          {"path", &component_info<PathShape>()},
+          {"motion_graph", &component_info<MotionGraphData>()}}},
         {"Under \"meshes\": {\"make\": NAME}", kinds(mesh_kinds())},
         {"Under \"images\": {\"make\": NAME}", kinds(pattern_kinds())},
         {"Internal components: written by systems", chosen(all_components(), true), true},
