@@ -132,7 +132,6 @@ void register_all_components() {
     register_component<MeshLevels>();
     register_component<BakedLight>();
     register_component<LightMap>();
-    register_component<LightMapState>();
     register_component<ReliefBox>();
     register_component<ReliefBoxState>();
     register_component<Inflate>();

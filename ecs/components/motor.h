@@ -97,7 +97,7 @@ struct LooseBody {
 
 LIMN_FIELDS(LooseBody) {
     LIMN_FIELD(radius, "of the ball", "m", 0.001, 100);
-    LIMN_FIELD(mass, "", "kg", 0.001, 1e6);
+    LIMN_FIELD(mass, "of the body", "kg", 0.001, 1e6);
     LIMN_FIELD(bounce, "fraction of the normal speed that a hit keeps", "", 0, 1);
     LIMN_FIELD(friction, "deceleration on the ground, in proportion to gravity", "", 0, 10);
     LIMN_FIELD(rolls, "turns as it rolls; a crate does not");

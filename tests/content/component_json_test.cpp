@@ -505,7 +505,7 @@ TEST_CASE("component json: assets are found at any depth") {
             index = 3;
             ++images;
         });
-    CHECK(images == 19);  // one in each texture slot
+    CHECK(images == 21);  // one in each texture slot
     CHECK(material.emission_texture.image.index == 3);
 }
 

@@ -36,20 +36,23 @@ inline JointTree make_free_chain(std::size_t count, float length = 1) {
 }
 
 inline Vec3 any_direction(Random& random) {
-    // in braces: compilers draw arguments of a call in different orders
-    return normalize_or(Vec3{random.normal(), random.normal(), random.normal()}, {0, 1, 0});
+    // one at a time: compilers draw the arguments of a call in different orders
+    const float z = random.normal();
+    const float y = random.normal();
+    const float x = random.normal();
+    return normalize_or({x, y, z}, {0, 1, 0});
 }
 
 /// In any direction, from `low` to `high` long.
 inline Vec3 any_offset(Random& random, float low, float high) {
-    const float length = random.uniform(low, high);
-    return length * any_direction(random);
+    const Vec3 direction = any_direction(random);
+    return random.uniform(low, high) * direction;
 }
 
 /// About any axis, by up to `angle` either way [rad].
 inline Quat any_turn(Random& random, float angle) {
-    const Vec3 axis = any_direction(random);
-    return rotation_about(axis, random.uniform(-angle, angle));
+    const float turn = random.uniform(-angle, angle);
+    return rotation_about(any_direction(random), turn);
 }
 
 /// Hinges about random axes with random links, and the same for the oracle.

@@ -45,6 +45,7 @@ struct MotorStage {
     explicit MotorStage(
         std::vector<MeshData> meshes = {}, const Transform& at = {},
         const CharacterMotor& motor = {}) {
+        register_all_components();
         Assets assets;
         assets.meshes = std::move(meshes);
         const auto count = static_cast<std::uint32_t>(assets.meshes.size());

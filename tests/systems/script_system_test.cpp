@@ -32,6 +32,9 @@ void run_step(World& world, std::uint64_t frame) {
         .time = static_cast<double>(frame + 1) * static_cast<double>(kStep),
         .frame = frame});
     run_events(world);
+    if (world.find_resource<Input>() != nullptr) {
+        world.run(keep_input);
+    }
 }
 
 const FieldInfo& field_of(const ComponentInfo& info, std::string_view name) {
