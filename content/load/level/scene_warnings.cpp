@@ -70,7 +70,6 @@ constexpr Need kNeeds[] = {
     {"motion_graph", {"skeleton", "", ""}},
     {"motion_style", {"motion_graph", "", ""}},
     {"hero", {"character_motor", "", ""}},
-    {"walk", {"skeleton", "", ""}},
     {"walk_route", {"move_intent", "", ""}},
     {"walk_route", {"walk", "", ""}},
     {"speed_view", {"camera", "", ""}},
