@@ -57,7 +57,7 @@ TEST_CASE("make: a mesh without a skeleton; morph targets are written, too") {
     const Result<GltfScene> scene = load_gltf(folder.file("fox.glb"));
     REQUIRE(scene);
     CHECK(scene->meshes[0].morphs.size() == 2);
-    CHECK(scene->clips.size() == 3);
+    CHECK(scene->clips.size() == 4);
 }
 
 TEST_CASE("make: what cannot be made is one line, and no file") {
