@@ -43,4 +43,9 @@ void add_morph_weights(const ClipData& clip, float time, float weight, std::span
 void compute_joint_matrices(
     const SkeletonData& skeleton, const LocalPose& pose, std::span<Affine> matrices);
 
+/// Local pose and morph weights of a skeleton in `clip`, otherwise like evaluate_pose().
+void sample_pose(
+    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& pose,
+    std::span<float> weights);
+
 }  // namespace limn

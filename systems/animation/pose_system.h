@@ -12,6 +12,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "ecs/system.h"
+#include "systems/animation/clip_sampling.h"
 #include "systems/animation/crowd_library.h"
 #include "systems/animation/pose_modifiers.h"
 
@@ -57,11 +58,6 @@ void update_attachments(
 /// Sets the morph targets that the animations control to the sum of their current weights.
 void add_morph_animations(
     const MorphPlayer& player, const std::vector<ClipData>& clips, std::span<float> weights);
-
-/// Local pose and morph weights of a skeleton in `clip`, otherwise like evaluate_pose().
-void sample_pose(
-    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& pose,
-    std::span<float> weights);
 
 /// Joint matrices and morph weights of a skeleton in `clip` at `time` [s]; the rest pose without a
 /// clip, or if the clip refers to missing joints or weights. `scratch` is reused between calls;

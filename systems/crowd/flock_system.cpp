@@ -2,7 +2,7 @@
 
 #include "ecs/base/rng.h"
 #include "systems/crowd/crowd_places.h"
-#include "systems/crowd/flock.h"
+#include "systems/crowd/flock_rules.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,6 +1,6 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
-#include "systems/crowd/flock.h"
+#include "systems/crowd/flock_rules.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 

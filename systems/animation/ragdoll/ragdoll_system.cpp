@@ -2,8 +2,8 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/base/rotation.h"
+#include "systems/animation/clip_sampling.h"
 #include "systems/animation/ik/placements.h"
-#include "systems/animation/pose_system.h"
 #include "systems/animation/ragdoll/ragdoll_contacts.h"
 #include "systems/animation/ragdoll/ragdoll_scene.h"
 #include "systems/animation/ragdoll/ragdoll_solver.h"

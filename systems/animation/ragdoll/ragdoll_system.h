@@ -16,8 +16,8 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "ecs/system.h"
-#include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ragdoll/ragdoll_rig.h"
+#include "systems/characters/grounds.h"
 #include "systems/particles/particle_obstacles.h"
 
 #include <cstddef>

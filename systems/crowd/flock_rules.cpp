@@ -1,4 +1,4 @@
-#include "systems/crowd/flock.h"
+#include "systems/crowd/flock_rules.h"
 
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
