@@ -29,7 +29,7 @@ constexpr std::size_t kMaxWalls = 8;
 constexpr float kEnoughProgress = 0.95f;  // share of its speed with which a walker is not blocked
 constexpr float kDetourGrowth = 4;        // when fully blocked [rad/s]
 constexpr float kDetourFading = 0.5f;     // when free [rad/s]
-constexpr float kLeastJitter = 0.002f;    // [m/s]
+constexpr float kMinJitter = 0.002f;      // [m/s]
 constexpr float kBlockedJitter = 0.1f;    // of the speed that is wanted
 constexpr std::uint64_t kJitterFrames = 32;
 constexpr float kSettling = 4;           // distance to the goal within which detours shrink [m]
@@ -331,7 +331,7 @@ Vec2 jittered_velocity(const CrowdWalker& walker, std::uint64_t seed, std::uint6
     Random random(seed, walker.key, name_hash("crowd jitter"), frame / kJitterFrames);
     const float blocked = walker.detour / kMaxDetour;
     const float size =
-        kLeastJitter + kBlockedJitter * blocked * std::sqrt(glm::dot(walker.wanted, walker.wanted));
+        kMinJitter + kBlockedJitter * blocked * std::sqrt(glm::dot(walker.wanted, walker.wanted));
     Vec2 velocity = walker.wanted;
     velocity.x += random.uniform(-size, size);
     velocity.y += random.uniform(-size, size);

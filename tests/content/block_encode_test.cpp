@@ -291,7 +291,8 @@ TEST_CASE(
 TEST_CASE(
     "block encode: levels are means of linear light, of any size, and a third more memory"
     * technique("engine.opt-texture")) {
-    const ImageData stripes = image_of(8, 8, [](int x, int) { return Vec4(Vec3(static_cast<float>(x % 2)), 1); });
+    const ImageData stripes =
+        image_of(8, 8, [](int x, int) { return Vec4(Vec3(static_cast<float>(x % 2)), 1); });
     const ImageData color = encode_blocks(stripes, {});
     CHECK(color.srgb);
     CHECK(color.mip_levels == 4);

@@ -573,7 +573,7 @@ Command add_make(CLI::App& program, MakeOptions& options) {
                 "  limn make person --set height=1.8 --set seed=7 -o person.glb\n"
                 "  limn make person --parts --set hair=bun --set legs=skirt -o dressed.glb\n"
                 "  limn make teapot -o teapot.glb\n"
-                "  limn view person.glb");
+                "  limn play person.glb");
     return {app, [&options] { return run_make(options); }};
 }
 

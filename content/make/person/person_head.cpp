@@ -159,7 +159,7 @@ WovenHead weave_head(const PersonFrame& frame) {
 /// Collapses edges where it shows least: in a space where the face is larger, and smaller what is
 /// under hair or clothes.
 void reduce(WovenHead& head, const PersonFrame& frame) {
-    constexpr float kMostError = 0.05f;
+    constexpr float kMaxHeadError = 0.05f;
     const bool bald = frame.look.shape.hair == PersonHair::Bald;
     std::vector<Vec3> warped;
     for (const Vec3& p : head.positions) {
@@ -179,7 +179,7 @@ void reduce(WovenHead& head, const PersonFrame& frame) {
     const std::size_t target = 3 * static_cast<std::size_t>(frame.look.shape.head_triangles);
     indices.resize(meshopt_simplify(
         indices.data(), head.indices.data(), head.indices.size(), &warped[0].x, warped.size(),
-        sizeof(Vec3), target, kMostError));
+        sizeof(Vec3), target, kMaxHeadError));
     head.indices = std::move(indices);
 }
 

@@ -12,8 +12,8 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kMostInfluences = 4;
-constexpr float kLeastWeight = 0.01f;
+constexpr std::size_t kMaxJointInfluences = 4;
+constexpr float kMinJointWeight = 0.01f;
 
 /// Moves weight from where it is to other joints.
 class WeightMixer {
@@ -247,7 +247,7 @@ void append_weights(SkinWeights& skin, const JointWeights& weights) {
         return weights[a] > weights[b];
     });
     std::size_t kept = 1;
-    while (kept < kMostInfluences && weights[order[kept]] > kLeastWeight) {
+    while (kept < kMaxJointInfluences && weights[order[kept]] > kMinJointWeight) {
         ++kept;
     }
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));

@@ -28,7 +28,7 @@ constexpr float kPrintError = 0.03f;          // of standing feet [leg lengths]
 constexpr float kHeadingError = 0.12f;        // [rad]
 constexpr float kSwingAround = 0.1f;          // of a stiff leg, sideways [leg lengths]
 constexpr float kBehind = 0.36f;              // of a foot that leaves the ground [strides]
-constexpr float kLeastBehind = 0.2f;          // [leg lengths]
+constexpr float kMinBehind = 0.2f;            // [leg lengths]
 constexpr float kFarBehind = 0.8f;            // [leg lengths]
 constexpr float kHurry = 8.0f;                // gain of the rate of steps [1/leg lengths]
 constexpr float kLeanPerPull = 0.04f;         // [rad/(m/s^2)]
@@ -98,7 +98,7 @@ struct WalkStep {
     [[nodiscard]] float rolling(std::uint32_t foot) const {
         const WalkFoot& place = state.feet[foot];
         const Vec3 ahead = heading_direction(place.to_heading);
-        const float reference = std::hypot(kBehind * stride().length, kLeastBehind * size.leg);
+        const float reference = std::hypot(kBehind * stride().length, kMinBehind * size.leg);
         return toe_off_pitch(walk, foot, glm::dot(motion.root - place.to, ahead) / reference);
     }
 };
