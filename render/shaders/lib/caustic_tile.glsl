@@ -25,7 +25,7 @@ const float kPathBias = 2e-3;
 // lib/shadow.glsl.
 float path_visibility(CausticTile tile, vec2 uv, float length) {
     float path = length / tile.view.z;
-#ifdef SHADOW_MAPS
+#if defined(SHADOWS) && defined(SHADOW_MAPS)
     vec4 rect = texelFetch(shadow_views, max(int(tile.view.x), 0) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
     vec2 corner = floor(texel - 0.5);
