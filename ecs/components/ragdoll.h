@@ -14,7 +14,8 @@ namespace limn {
 // Techniques: char.dynamics
 
 /// With a Skeleton: while active, its bones are rigid capsules on ball joints that fall, collide
-/// with ParticleColliders (but not water) and Walkable entities, and are moved by force fields.
+/// with ParticleColliders, Walkable entities and other active ragdolls, float in water, and are
+/// moved by force fields.
 /// Limits of the joints are the skeleton's freedoms, or those of a person. When it becomes active,
 /// the bones have the velocities of the animation. When it becomes inactive, an entity without
 /// parent moves to where its body lies, and the pose goes over into the animation.
@@ -30,6 +31,9 @@ struct Ragdoll {
     float collapse = 0.15f;
     float get_up = 1.2f;
     float fields = 1.0f;
+    float buoyancy = 1.03f;
+    float water_drag = 2.5f;
+    bool meets = true;
     float trip_speed = 0.0f;
     float trip_field = 0.0f;
     Vec3 push = {0, 0, 0};
@@ -48,6 +52,10 @@ LIMN_FIELDS(Ragdoll) {
     LIMN_FIELD(collapse, "time in which the muscles give way after the switch", "s", 0, 60);
     LIMN_FIELD(get_up, "time in which the pose goes over into the animation again", "s", 0, 60);
     LIMN_FIELD(fields, "factor on the accelerations of each force_field", "", -100, 100);
+    LIMN_FIELD(
+        buoyancy, "density of water over that of the body; 0: falls through water", "", 0, 100);
+    LIMN_FIELD(water_drag, "rate at which what is under water slows down", "1/s", 0, 100);
+    LIMN_FIELD(meets, "touches other ragdolls that are active");
     LIMN_FIELD(
         trip_speed, "becomes active when a collider of at least this speed touches it; 0: never",
         "m/s", 0, 1e4);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 // Techniques: char.dynamics
@@ -190,8 +191,8 @@ RigidVec RagdollObstacle::velocity(const RigidVec& point, double dt) const {
 
 RagdollContacts::RagdollContacts(
     std::span<const RagdollObstacle> obstacles, std::span<const std::uint64_t> apart,
-    const std::vector<RigidCapsule>& bodies, double dt)
-    : obstacles_(obstacles), dt_(dt) {
+    const std::vector<RigidCapsule>& bodies, double dt, std::vector<PartingPlane> planes)
+    : obstacles_(obstacles), dt_(dt), planes_(std::move(planes)) {
     std::vector<double> reaches;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const RigidCapsule& body = bodies[i];
@@ -289,6 +290,20 @@ void RagdollContacts::find(
             RagdollContact contact = make_contact(near.body, body, touch);
             contact.moves = obstacle.velocity(found.list[i].surface, dt_);
             contacts.push_back(contact);
+        }
+    }
+    for (const PartingPlane& plane : planes_) {
+        const RigidCapsule& body = bodies[plane.body];
+        const LineSegment segment = body.placed();
+        const RigidVec point = plane.point + (dt_ - left) * plane.velocity;
+        for (const RigidVec& end : {segment.from, segment.to}) {
+            const double height = glm::dot(plane.normal, end - point);
+            if (height < body.radius + margin) {
+                RagdollContact contact = make_contact(
+                    plane.body, body, {end, end - height * plane.normal, plane.normal});
+                contact.moves = plane.velocity;
+                contacts.push_back(contact);
+            }
         }
     }
     for (const NearBodies& pair : pairs_) {

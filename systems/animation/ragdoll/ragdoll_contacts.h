@@ -1,5 +1,6 @@
 #pragma once
 
+#include "systems/animation/ragdoll/ragdoll_pairs.h"
 #include "systems/animation/ragdoll/ragdoll_solver.h"
 #include "systems/particles/collider.h"
 #include "systems/particles/collider_bounds.h"
@@ -30,11 +31,11 @@ struct RagdollObstacle {
 /// Finds the contacts of one ragdoll during a step.
 class RagdollContacts {
   public:
-    /// Collects what may touch within dt [s]. `apart`: pairs of bodies as in RagdollRig; the spans
-    /// must outlive this.
+    /// Collects what may touch within dt [s]. `apart`: pairs of bodies as in RagdollRig; `planes`:
+    /// between it and other ragdolls. The spans must outlive this.
     RagdollContacts(
         std::span<const RagdollObstacle> obstacles, std::span<const std::uint64_t> apart,
-        const std::vector<RigidCapsule>& bodies, double dt);
+        const std::vector<RigidCapsule>& bodies, double dt, std::vector<PartingPlane> planes = {});
 
     /// Those when `left` [s] of the step are left. `margin`: also surfaces that near [m].
     void find(
@@ -60,6 +61,7 @@ class RagdollContacts {
     double dt_;
     std::vector<Near> near_{};
     std::vector<NearBodies> pairs_{};
+    std::vector<PartingPlane> planes_;
 };
 
 }  // namespace limn

@@ -19,6 +19,7 @@
 #include "systems/animation/ragdoll/ragdoll_rig.h"
 #include "systems/characters/grounds.h"
 #include "systems/particles/particle_obstacles.h"
+#include "systems/water/water_query.h"
 
 #include <cstddef>
 #include <vector>
@@ -26,8 +27,8 @@
 namespace limn {
 
 // Ragdolls: characters that physics moves instead of their animation (ragdoll_solver.h). They are
-// stepped after everything else has moved, and posed in the next step. What they bump into is not
-// moved by them, and ragdolls do not touch each other.
+// stepped after everything else has moved, and posed in the next step. They float in water and
+// meet each other (ragdoll_pairs.h); what else they bump into is not moved by them.
 
 /// Resource: the capsules of skeletons; never saved.
 struct RagdollRigs {
@@ -51,6 +52,7 @@ struct RagdollSurroundings {
         grounds;
     Query<const ForceField, const WorldTransform> fields;
     Query<const Parent> parents;
+    WaterQuery waters;
     Res<const ParticleObstacles> obstacles;
     Res<WalkableMeshes> meshes;
 };
@@ -64,7 +66,7 @@ struct SystemParam<RagdollSurroundings>
           Query<
               const Walkable, const WorldTransform, const PreviousWorldTransform,
               Optional<const MeshInstance>, Optional<const HeightField>, Without<ParticleCollider>>,
-          Query<const ForceField, const WorldTransform>, Query<const Parent>,
+          Query<const ForceField, const WorldTransform>, Query<const Parent>, WaterQuery,
           Res<const ParticleObstacles>, Res<WalkableMeshes>> {};
 
 void add_ragdoll_states(
