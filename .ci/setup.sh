@@ -6,7 +6,7 @@ packages=(
     libtinygltf-dev libopenexr-dev libopenimageio-dev libpng-dev libmeshoptimizer-dev nlohmann-json3-dev
     libtbb-dev libembree-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
     doctest-dev libbenchmark-dev libkissfft-dev
-    glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
+    glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick ffmpeg
 )
 ci_packages=(clang clang-format libclang-rt-14-dev mesa-vulkan-drivers espeak-ng)
 

@@ -56,6 +56,11 @@ done
 for name in wall.png normals.png a.png b.png before.png after.png heights.png model.exr memorial.exr museum.exr; do
     "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
 done
+for number in 0000 0001; do
+    cp "$folder/wall.png" "$folder/frame_$number.png"
+    cp "$folder/model.exr" "$folder/frame_$number.exr"
+done
+ffmpeg -v error -f lavfi -i sine=d=1 "$folder/hello.wav" || exit 1
 "$limn" bake block "$folder/wall.png" -o "$folder/wall.dds" >/dev/null || exit 1
 
 echo '{"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [-1, 0, 1]},

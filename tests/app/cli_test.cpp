@@ -101,6 +101,8 @@ TEST_CASE("cli: wrong usage exits with 2 and one line that names the mistake") {
     check_fails(folder, {"bench", "characters", "--only", "draft"}, 2, "chain");
     check_fails(folder, {"bench", "gallery", "--only", "draw"}, 2, "particles");
     check_fails(folder, {"quality", "--what"}, 2, "--what");
+    check_fails(folder, {"film", "a.png", "-o", "a.mp4"}, 2, "%04d");
+    check_fails(folder, {"film", "a_%d.png", "-o", "a.avi"}, 2, ".mp4");
     check_fails(folder, {"hash", "gallery"}, 2, "--frames");
     check_fails(folder, {"hash", "gallery", "--frames", "two"}, 2, "two");
     check_fails(folder, {"hash", "gallery", "--frames", "2", "--threads", "0"}, 2, "--threads");

@@ -28,10 +28,14 @@ constexpr int kVisible = 8;              // of 255: a visible difference in a ch
 constexpr double kMinDifferent = 0.002;  // of the pixels that must differ so much
 constexpr double kMaxDifferent = 0.001;  // of the pixels that may, where methods must agree
 
+bool is_about_probes(const LevelShow& show) {
+    return (write_json(show.set) + write_json(show.off)).find("env_probe") != std::string::npos;
+}
+
 /// Takes the environment probes away, whose six faces are half the work of an image, where a show
 /// is not about them.
 void remove_probes(World& world, const LevelShow& show) {
-    if ((write_json(show.set) + write_json(show.off)).find("env_probe") != std::string::npos) {
+    if (is_about_probes(show)) {
         return;
     }
     std::vector<Entity> probes;
@@ -55,6 +59,35 @@ gpu::ByteImage draw_show(const FoundShow& found, bool off) {
     return gpu::read_bytes(*frame.display);
 }
 
+/// All that an image depends on.
+std::string image_key(const FoundShow& found, bool off) {
+    const LevelShow& show = found.show;
+    std::string key = fmt::format(
+        "{} {} {} {} {}", found.level.name, write_json(off ? show.off : show.set), show.time,
+        is_about_probes(show), show.camera_name);
+    if (show.camera) {
+        const ShowCamera& at = *show.camera;
+        key += fmt::format(
+            " {} {} {} {} {} {} {}", at.position.x, at.position.y, at.position.z, at.look_at.x,
+            at.look_at.y, at.look_at.z, at.fov_y);
+    }
+    return key;
+}
+
+/// Those of draw_show() that several shows share are drawn once.
+class ShowImages {
+  public:
+    const gpu::ByteImage& of(const FoundShow& found, bool off) {
+        const std::string key = image_key(found, off);
+        const auto drawn = images_.find(key);
+        return drawn != images_.end() ? drawn->second
+                                      : images_.emplace(key, draw_show(found, off)).first->second;
+    }
+
+  private:
+    std::map<std::string, gpu::ByteImage> images_;
+};
+
 /// Fraction of the pixels with a visible difference.
 double different_fraction(const gpu::ByteImage& a, const gpu::ByteImage& b) {
     REQUIRE(a.pixels.size() == b.pixels.size());
@@ -77,10 +110,11 @@ TEST_CASE("shows: each changes the image where it is on, or nothing where method
     const Result<std::vector<FoundShow>> shows = list_shows();
     REQUIRE_MESSAGE(shows.ok(), (shows ? std::string() : shows.error().message));
     REQUIRE_FALSE(shows->empty());
+    ShowImages images;
     for (const FoundShow& found : *shows) {
         CAPTURE(found.level.name);
         CAPTURE(found.show.technique);
-        const double fraction = different_fraction(draw_show(found, false), draw_show(found, true));
+        const double fraction = different_fraction(images.of(found, false), images.of(found, true));
         if (found.show.equal) {
             CHECK(fraction <= kMaxDifferent);
         } else {

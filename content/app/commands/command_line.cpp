@@ -5,6 +5,7 @@
 #include "content/app/commands/check_command.h"
 #include "content/app/commands/command_options.h"
 #include "content/app/commands/compare_command.h"
+#include "content/app/commands/film_command.h"
 #include "content/app/commands/hash_command.h"
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/import_command.h"
@@ -99,10 +100,53 @@ Command add_play(CLI::App& program, PlayOptions& options) {
     return {app, [&options] { return run_play(options); }};
 }
 
+void add_film(CLI::App& app, FilmSettings& film) {
+    add_integer(
+        app, "--quality", "of a film, 0 (smallest file) to 100 (no visible loss)", film.quality, 0,
+        100)
+        ->default_str("85");
+    app.add_option("--sound", film.sound, "sound of a film, cut or padded to its length")
+        ->type_name("FILE");
+}
+
+Command add_film_command(CLI::App& program, FilmOptions& options) {
+    CLI::App* app = program.add_subcommand("film", "Make a film of numbered images");
+    app->add_option("images", options.frames, "frame_%04d.png or .exr")
+        ->type_name("FILES")
+        ->required();
+    app->add_option("-o,--out", options.out, "OUT.mp4, OUT.webm, OUT.mkv or OUT.gif")
+        ->type_name("FILE")
+        ->required();
+    add_parsed(
+        *app, "--frames", "first and last frame, inclusive; default: all", options.range,
+        parse_frame_range)
+        ->type_name("A:B");
+    add_number(*app, "--fps", "frames per second", options.film.fps, 0.001, 10000)
+        ->default_str("60");
+    add_film(*app, options.film);
+    app->add_flag("--quiet", options.quiet, "print nothing but errors and warnings");
+    app->footer("By the program ffmpeg: H.264 in .mp4 and .mkv, VP9 in .webm. Colors are BT.709 in "
+                "limited\n"
+                "range. An EXR is tone mapped as `limn view` does. No frame between the first and "
+                "the last\n"
+                "may be missing, and all have one size; odd sizes get a column or row more.\n\n"
+                "Examples:\n"
+                "  limn film 'frame_%04d.png' -o film.mp4 --fps 30\n"
+                "  limn film 'frame_%04d.exr' -o film.webm --sound hello.wav");
+    app->callback([&options] {
+        if (const Status status = check_film_options(options); !status) {
+            throw CLI::ValidationError(status.error().message);
+        }
+    });
+    return {app, [&options] { return run_film(options); }};
+}
+
 Command add_render(CLI::App& program, RenderOptions& options) {
     CLI::App* app = program.add_subcommand("render", "Render an image or a range of frames");
     app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE");
-    app->add_option("-o,--out", options.out, "OUT.png, OUT.exr, or frame_%04d.png for --frames")
+    app->add_option(
+           "-o,--out", options.out,
+           "OUT.png, OUT.exr; for --frames frame_%04d.png, or a film: OUT.mp4, .webm, .mkv, .gif")
         ->type_name("FILE")
         ->required();
     add_size(*app, options.size);
@@ -130,22 +174,28 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
+    add_film(*app, options.film);
+    app->add_flag("--keep-frames", options.keep_frames, "keep the images of a film in OUT.frames");
     app->add_flag("--quiet", options.quiet, "print nothing but errors and warnings");
-    app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
-                "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
-                "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
-                "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD.\n"
-                "A name may contain dots, as in glTF files; the longest match is used.\n"
-                "VALUE is JSON or a bare word: '[1, 2, 3]', 40deg, orange.\n"
-                "Files are written under a temporary name and renamed when complete.\n\n"
-                "Examples:\n"
-                "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
-                "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
-                "  limn render helmet.glb -o 'turn_%04d.png' --frames 0:119 --turntable 2\n"
-                "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
-                "  limn render --show water.fresnel --off -o without.png\n"
-                "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
-                "materials.gilt.roughness=0.4");
+    app->footer(
+        "Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
+        "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
+        "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
+        "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD.\n"
+        "A name may contain dots, as in glTF files; the longest match is used.\n"
+        "VALUE is JSON or a bare word: '[1, 2, 3]', 40deg, orange.\n"
+        "Files are written under a temporary name and renamed when complete.\n"
+        "A film needs the program ffmpeg. Its frames are images in OUT.frames until it is made; a\n"
+        "film that was stopped goes on where it was.\n\n"
+        "Examples:\n"
+        "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
+        "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
+        "  limn render helmet.glb -o 'turn_%04d.png' --frames 0:119 --turntable 2\n"
+        "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
+        "  limn render gallery -o gallery.mp4 --frames 0:299 --fps 30\n"
+        "  limn render --show water.fresnel --off -o without.png\n"
+        "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
+        "materials.gilt.roughness=0.4");
     app->callback([&options] {
         if (const Status status = check_render_options(options); !status) {
             throw CLI::ValidationError(status.error().message);
@@ -663,6 +713,7 @@ Command add_components(CLI::App& program, ComponentsOptions& options) {
 struct AllOptions {
     PlayOptions play;
     RenderOptions render;
+    FilmOptions film;
     ViewOptions view;
     BenchOptions bench;
     HashOptions hash;
@@ -681,6 +732,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
     return {
         add_play(program, options.play),
         add_render(program, options.render),
+        add_film_command(program, options.film),
         add_view(program, options.view),
         add_bench(program, options.bench),
         add_check(program, options.checked),

@@ -22,13 +22,6 @@ struct Placeholder {
     int digits = 1;
 };
 
-bool ends_with(std::string_view text, std::string_view end) {
-    return text.size() > end.size()
-           && std::equal(end.rbegin(), end.rend(), text.rbegin(), [](char a, char b) {
-                  return std::tolower(static_cast<unsigned char>(b)) == a;
-              });
-}
-
 /// Not found (`begin` is npos) for a path without '%'; `ok` is false for anything but one valid
 /// placeholder.
 Placeholder find_placeholder(std::string_view path, bool& ok) {
@@ -96,11 +89,18 @@ write_exr_file(const std::string& path, const FrameOutput& frame, const ImageAtt
 
 }  // namespace
 
+bool has_extension(std::string_view path, std::string_view extension) {
+    return path.size() > extension.size()
+           && std::equal(extension.rbegin(), extension.rend(), path.rbegin(), [](char a, char b) {
+                  return std::tolower(static_cast<unsigned char>(b)) == a;
+              });
+}
+
 Result<ImageFileKind> image_file_kind(std::string_view path) {
-    if (ends_with(path, ".png")) {
+    if (has_extension(path, ".png")) {
         return ImageFileKind::Png;
     }
-    if (ends_with(path, ".exr")) {
+    if (has_extension(path, ".exr")) {
         return ImageFileKind::Exr;
     }
     return fail("found \"{}\", expected a name that ends in .png or .exr", path);

@@ -17,6 +17,10 @@ struct FrameOutput;
 
 enum class ImageFileKind : std::uint8_t { Png, Exr };
 
+/// Whether the name ends in `extension`, ".png" in small letters, in any case; a name that is
+/// nothing else does not.
+[[nodiscard]] bool has_extension(std::string_view path, std::string_view extension);
+
 /// By the file name's extension, ".png" or ".exr" in any case; any other is an error.
 [[nodiscard]] Result<ImageFileKind> image_file_kind(std::string_view path);
 

@@ -2,11 +2,14 @@
 
 #include "content/app/commands/activity.h"
 #include "content/app/commands/exposure_samples.h"
+#include "content/app/commands/film_command.h"
 #include "content/app/commands/headless.h"
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/image_notes.h"
 #include "content/app/commands/progress.h"
+#include "content/app/commands/render_record.h"
 #include "content/app/commands/stage.h"
+#include "content/load/files/image_load.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 #include "ecs/components/env_probe.h"
@@ -180,19 +183,110 @@ Status render_still(Renderer& renderer, Stage& stage, Entity camera, const Rende
     return write_frame(frame, stage, time, options.out);
 }
 
-/// All of --frames.
-Status render_range(Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options) {
-    const int count = options.frames->last - options.frames->first + 1;
-    Progress progress("frame", count, !options.quiet);
+/// Those of the frames that are to be drawn: all that are not `done`, and those on which they
+/// depend.
+std::vector<bool> frames_to_draw(const std::vector<bool>& done, int dependent) {
+    std::vector<bool> drawn(done.size(), false);
+    int wanted = 0;  // more frames before the one at hand
+    for (std::size_t i = done.size(); i-- > 0;) {
+        wanted = done[i] ? wanted - 1 : dependent;
+        drawn[i] = !done[i] || wanted >= 0;
+    }
+    return drawn;
+}
+
+/// All of --frames but those that are `done`.
+Status render_range(
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
+    const std::string& pattern, const std::vector<bool>& done) {
+    const auto drawn = frames_to_draw(done, previous_frames(stage.world, 1 / options.fps));
+    Progress progress("frame", static_cast<int>(done.size()), !options.quiet);
     progress.update(0);
-    for (int i = 0; i < count; ++i) {
-        const int frame = options.frames->first + i;
+    for (std::size_t i = 0; i < done.size(); ++i) {
+        const int frame = options.frames->first + static_cast<int>(i);
         const FrameTimes time = {frame / options.fps, (frame - 1) / options.fps};
-        const FrameOutput output = options.samples > 0
-                                       ? draw_sampled(renderer, stage, camera, options, time)
-                                       : draw_played(renderer, stage, camera, options, time);
-        LIMN_TRY(write_frame(output, stage, time.shown, numbered_path(options.out, frame)));
-        progress.update(i + 1);
+        if (drawn[i]) {
+            const FrameOutput output = options.samples > 0
+                                           ? draw_sampled(renderer, stage, camera, options, time)
+                                           : draw_played(renderer, stage, camera, options, time);
+            if (!done[i]) {
+                LIMN_TRY(write_frame(output, stage, time.shown, numbered_path(pattern, frame)));
+            }
+        }
+        progress.update(static_cast<int>(i + 1));
+    }
+    return Done{};
+}
+
+/// Where the images of a film are while it is made.
+std::string frames_folder(const RenderOptions& options) {
+    return options.out + ".frames";
+}
+
+/// Whether the file is a whole image of that size.
+bool is_whole_frame(const std::string& path, const IVec2& size) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        return false;
+    }
+    const Result<ImageData> image = load_image(path, true);
+    return image && image->width == size.x && image->height == size.y;
+}
+
+/// The frames that a stopped run left, then all others, then the film.
+Status render_film(Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options) {
+    const std::filesystem::path folder = frames_folder(options);
+    const std::string pattern = (folder / "frame_%05d.png").string();
+    std::vector<bool> done;
+    for (int frame = options.frames->first; frame <= options.frames->last; ++frame) {
+        done.push_back(is_whole_frame(numbered_path(pattern, frame), options.size));
+    }
+    const auto left = std::ranges::count(done, true);
+    if (left > 0 && !options.quiet) {
+        fmt::print("{}: {} of {} frames are there already\n", folder.string(), left, done.size());
+    }
+    LIMN_TRY(render_range(renderer, stage, camera, options, pattern, done));
+    FilmSettings film = options.film;
+    film.fps = options.fps;
+    const std::vector<std::string> files = LIMN_TRY(find_frame_files(pattern, options.frames));
+    LIMN_TRY(make_film(files, options.out, film, options.quiet));
+    if (!options.keep_frames) {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+    }
+    return Done{};
+}
+
+Status draw_images(Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options) {
+    if (!options.frames) {
+        return render_still(renderer, stage, camera, options);
+    }
+    if (film_kind(options.out)) {
+        return render_film(renderer, stage, camera, options);
+    }
+    const auto count = static_cast<std::size_t>(options.frames->last - options.frames->first + 1);
+    return render_range(
+        renderer, stage, camera, options, options.out, std::vector<bool>(count, false));
+}
+
+/// Before anything is loaded.
+Status prepare_film(const RenderOptions& options) {
+    LIMN_TRY(check_film(options.out, options.film));
+    const std::filesystem::path folder = frames_folder(options);
+    std::error_code error;
+    std::filesystem::create_directory(folder, error);
+    if (error) {
+        return fail("{}: {}", folder.string(), error.message());
+    }
+    return claim_frames((folder / "render.txt").string(), describe_render(options));
+}
+
+Status check_film_render(const RenderOptions& options) {
+    if (!options.frames) {
+        return fail("--out: found \"{}\", expected --frames with a film", options.out);
+    }
+    if (!options.aovs.empty()) {
+        return fail("--aov: found \"{}\", expected images of EXR with it", options.out);
     }
     return Done{};
 }
@@ -224,9 +318,16 @@ Status check_render_options(const RenderOptions& options) {
     if (options.show.off && options.show.technique.empty()) {
         return fail("found --off alone, expected --show ID with it");
     }
+    if (film_kind(options.out)) {
+        return check_film_render(options);
+    }
     const Result<ImageFileKind> kind = image_file_kind(options.out);
     if (!kind) {
         return fail("--out: {}", kind.error().message);
+    }
+    if (options.keep_frames || !options.film.sound.empty()) {
+        return fail(
+            "--out: found \"{}\", expected a film with --keep-frames and --sound", options.out);
     }
     const Result<bool> numbered = has_frame_number(options.out);
     if (!numbered) {
@@ -255,6 +356,9 @@ Status run_render(const RenderOptions& options) {
     const std::string scene = !options.scene.empty()
                                   ? options.scene
                                   : LIMN_TRY(find_show(options.show.technique)).level.path;
+    if (film_kind(options.out)) {
+        LIMN_TRY(prepare_film(options));
+    }
     std::optional<Activity> loading(std::in_place, "loading " + scene, !options.quiet);
     const std::unique_ptr<Stage> opened = LIMN_TRY(open_stage(
         scene, {.seed = options.seed,
@@ -267,9 +371,7 @@ Status run_render(const RenderOptions& options) {
     HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
     LIMN_TRY(check_image_size(*headless.device, options.size));
     loading.reset();
-    LIMN_TRY(
-        options.frames ? render_range(*headless.renderer, stage, camera, options)
-                       : render_still(*headless.renderer, stage, camera, options));
+    LIMN_TRY(draw_images(*headless.renderer, stage, camera, options));
     if (!options.quiet) {
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/app/commands/command_values.h"
+#include "content/app/commands/film_writer.h"
 #include "content/app/commands/stage.h"
 #include "content/load/level/level_show.h"
 #include "content/load/model_view.h"
@@ -23,7 +24,7 @@ namespace limn {
 /// `limn render`: renders images without a window.
 struct RenderOptions {
     std::string scene;  ///< level name, level file or glTF; empty: the first level with the show
-    std::string out;    ///< .png, .exr; with %04d in the name for a range
+    std::string out;    ///< .png, .exr, with %04d in the name for a range; or a film of a range
     IVec2 size = {1280, 720};
     std::optional<double> time;        ///< of a single image [s]; default: the show's, or 0
     std::optional<FrameRange> frames;  ///< frame n shows time n / fps
@@ -37,6 +38,8 @@ struct RenderOptions {
     ShowChoice show;                      ///< what to show of the level
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
     ModelViewOptions model;               ///< of a single model
+    FilmSettings film;                    ///< of a film; its rate is `fps`
+    bool keep_frames = false;             ///< of a film, after it is made
     bool quiet = false;                   ///< prints nothing but errors and warnings
 };
 
@@ -52,6 +55,10 @@ struct RenderOptions {
 /// Writes every image under a temporary name and renames it, so an interrupted run leaves only
 /// complete files. On a terminal shows progress; finally prints a line with the file, its size
 /// and the time it took.
+///
+/// The frames of a film are images in the folder NAME.frames beside it. Those that a stopped run
+/// left there are not rendered again; it fails where they are of other settings (render_record.h).
+/// The folder is removed when the film is whole.
 [[nodiscard]] Status run_render(const RenderOptions& options);
 
 }  // namespace limn
