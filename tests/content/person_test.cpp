@@ -277,6 +277,29 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("person: soles lie on the floor in every clip, whatever the height and the build") {
+    for (int seed = 0; seed < 24; ++seed) {
+        const PersonShape shape = {
+            .part = PersonPart::Shoes,
+            .seed = seed,
+            .height = seed % 2 == 0 ? 0.0f : 1.2f + 0.04f * static_cast<float>(seed)};
+        const MeshRig rig = make_person_rig(shape);
+        const MeshData shoes = make_person(shape);
+        for (const ClipData& clip : rig.clips) {
+            CAPTURE(seed);
+            CAPTURE(clip.name);
+            const MeshData moved = posed(shoes, rig.skeleton, clip);
+            std::array<float, 2> soles = {1, 1};
+            for (const Vec3& p : moved.positions) {
+                float& sole = soles[p.x > 0 ? 0 : 1];
+                sole = std::min(sole, p.y);
+            }
+            CHECK(std::abs(soles[0]) < 0.002f);
+            CHECK(std::abs(soles[1]) < 0.002f);
+        }
+    }
+}
+
 TEST_CASE("person: a seed is always the same person, another seed another one") {
     const MeshData first = make_person({.seed = 7});
     const MeshData again = make_person({.seed = 7});

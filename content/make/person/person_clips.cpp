@@ -26,6 +26,20 @@ struct KeyPose {
         turn(joint_index(joint, -1), {axis.x, -axis.y, -axis.z}, angle);
     }
 
+    /// How far the ankles are above the floor that the person stands on at rest, if the hips stay.
+    [[nodiscard]] float raised_feet(const PersonFrame& frame) const {
+        Quat turned(1, 0, 0, 0);
+        float height = frame.at(PersonJoint::Hips).y;
+        Vec3 from = frame.at(PersonJoint::Hips);
+        for (const SideJoint joint : {SideJoint::Thigh, SideJoint::Shin, SideJoint::Foot}) {
+            height += (turned * (frame.at(joint) - from)).y;
+            from = frame.at(joint);
+            const auto found = turns.find(joint_index(joint, 1));
+            turned = found == turns.end() ? turned : turned * found->second;
+        }
+        return height - from.y;
+    }
+
   private:
     void turn(std::uint16_t joint, const Vec3& axis, float angle) {
         const auto [found, added] = turns.try_emplace(joint, Quat(1, 0, 0, 0));
@@ -77,8 +91,7 @@ KeyPose sitting(const PersonFrame& frame) {
     pose.turn(SideJoint::Forearm, -frame.forearm.back, 42);
     pose.turn(SideJoint::Thigh, {1, 0, 0}, -86);
     pose.turn(SideJoint::Shin, {1, 0, 0}, 86);
-    const float drop = frame.at(SideJoint::Thigh).y - frame.at(SideJoint::Shin).y;
-    pose.hips = {0, -drop, -0.1f};
+    pose.hips = {0, -pose.raised_feet(frame), -0.1f};
     return pose;
 }
 
@@ -90,7 +103,7 @@ KeyPose squatting(const PersonFrame& frame) {
     pose.turn(SideJoint::UpperArm, {1, 0, 0}, -40);
     pose.turn(PersonJoint::Spine, {1, 0, 0}, 14);
     pose.turn(PersonJoint::Chest, {1, 0, 0}, 12);
-    pose.hips.y -= 0.15f;
+    pose.hips.y = -pose.raised_feet(frame);
     return pose;
 }
 
