@@ -36,6 +36,9 @@ void build_agent_grid(
     // Now begins[c + 1] is the first slot of cell c.
     std::copy(grid.begins.begin() + 1, grid.begins.end(), grid.begins.begin());
     grid.begins[cells] = static_cast<std::uint32_t>(points.size());
+    if (std::is_sorted(keys.begin(), keys.end())) {
+        return;  // and so is each cell
+    }
     const auto by_key = [keys](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; };
     for (std::size_t c = 0; c < cells; ++c) {
         const auto begin = grid.order.begin() + grid.begins[c];

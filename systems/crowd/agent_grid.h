@@ -40,10 +40,30 @@ void build_agent_grid(
     return toward_zero - (static_cast<float>(toward_zero) > cells ? 1 : 0);
 }
 
-/// Calls visit(SlotRun) for the cells that a square of `reach` [m] to each side of a point touches;
-/// no slot twice.
-template <typename Visit>
-void each_run(const AgentGrid& grid, const Vec2& point, float reach, const Visit& visit) {
+/// The cells that a square of `reach` [m] to each side of a point touches: up to two runs a row.
+struct GridWindow {
+    std::uint32_t column = 0;   ///< the first one
+    std::uint32_t columns = 0;  ///< their number
+    std::uint32_t row = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t straight = 0;  ///< columns before the table repeats
+
+    /// No slot is in two of these.
+    [[nodiscard]] SlotRun run(const AgentGrid& grid, std::uint32_t i) const {
+        const std::uint32_t* const begins = row_begins(grid, i);
+        return {begins[column], begins[column + straight]};
+    }
+    /// Empty unless straight < columns.
+    [[nodiscard]] SlotRun wrapped_run(const AgentGrid& grid, std::uint32_t i) const {
+        const std::uint32_t* const begins = row_begins(grid, i);
+        return {begins[0], begins[columns - straight]};
+    }
+    [[nodiscard]] const std::uint32_t* row_begins(const AgentGrid& grid, std::uint32_t i) const {
+        return grid.begins.data() + std::size_t{(row + i) & (grid.columns - 1)} * grid.columns;
+    }
+};
+
+[[nodiscard]] inline GridWindow find_window(const AgentGrid& grid, const Vec2& point, float reach) {
     const std::uint32_t mask = grid.columns - 1;
     const float per_meter = 1 / grid.cell;
     const auto range = [&](float x, std::uint32_t& first, std::uint32_t& count) {
@@ -52,19 +72,22 @@ void each_run(const AgentGrid& grid, const Vec2& point, float reach, const Visit
         first = static_cast<std::uint32_t>(low) & mask;
         count = std::min(static_cast<std::uint32_t>(high - low) + 1, grid.columns);
     };
-    std::uint32_t column = 0;
-    std::uint32_t columns = 0;
-    std::uint32_t row = 0;
-    std::uint32_t rows = 0;
-    range(point.x, column, columns);
-    range(point.y, row, rows);
-    const std::uint32_t straight = std::min(columns, grid.columns - column);
-    for (std::uint32_t i = 0; i < rows; ++i) {
-        const std::uint32_t* const begins =
-            grid.begins.data() + std::size_t{(row + i) & mask} * grid.columns;
-        visit(SlotRun{begins[column], begins[column + straight]});
-        if (straight < columns) {
-            visit(SlotRun{begins[0], begins[columns - straight]});
+    GridWindow window;
+    range(point.x, window.column, window.columns);
+    range(point.y, window.row, window.rows);
+    window.straight = std::min(window.columns, grid.columns - window.column);
+    return window;
+}
+
+/// Calls visit(SlotRun) for the cells that a square of `reach` [m] to each side of a point touches;
+/// no slot twice.
+template <typename Visit>
+void each_run(const AgentGrid& grid, const Vec2& point, float reach, const Visit& visit) {
+    const GridWindow window = find_window(grid, point, reach);
+    for (std::uint32_t i = 0; i < window.rows; ++i) {
+        visit(window.run(grid, i));
+        if (window.straight < window.columns) {
+            visit(window.wrapped_run(grid, i));
         }
     }
 }

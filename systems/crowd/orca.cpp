@@ -14,8 +14,6 @@ namespace limn {
 namespace {
 
 constexpr float kParallelSine = 1e-5f;  // of the angle between lines that count as parallel
-constexpr float kHeadOn =
-    0.2f;  // lateral velocity at which walkers meet head-on, in radii a horizon
 
 using PlaneList = std::span<const VelocityPlane>;
 
@@ -143,11 +141,11 @@ avoid_walker(const WalkerDisc& walker, const WalkerDisc& other, const AvoidOptio
     float change = 0;  // of the relative velocity, along the normal
     if (overlaps || (along < 0 && square(along) > square(reach) * length2)) {
         const float length = std::sqrt(length2);
-        normal = length > 1e-6f ? from_center / length : options.apart;
+        normal = length > kCenteredSpeed ? from_center / length : options.apart;
         change = rate * reach - length;
     } else {  // on a leg of the cone
         const float leg = std::sqrt(distance2 - square(reach));
-        const float head_on = options.side * kHeadOn * reach * rate * leg;
+        const float head_on = options.side * kHeadOnSpeed * reach * rate * leg;
         const float left = offset.x * relative.y - offset.y * relative.x;
         const float side = left + head_on > 0 ? 1.0f : -1.0f;
         normal =

@@ -28,6 +28,10 @@ struct VelocityPlane {
     float offset = 0;      ///< [m/s]
 };
 
+inline constexpr float kHeadOnSpeed =
+    0.2f;  ///< lateral, at which walkers meet head-on [radii a horizon]
+inline constexpr float kCenteredSpeed = 1e-6f;  ///< from the center, without a direction [m/s]
+
 /// How a walker avoids another.
 struct AvoidOptions {
     float horizon = 2;          ///< without contact for so long [s]

@@ -17,7 +17,7 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kCrowdGrain = 256;    // slots per task
+constexpr std::size_t kCrowdGrain = 256;    // slots per task: whole batches
 constexpr float kCellSize = 2.0f;           // [m]
 constexpr float kContactTime = 0.2f;        // in which avoidance separates overlapping walkers [s]
 constexpr float kWallHorizon = 0.4f;        // [s]
@@ -35,161 +35,61 @@ constexpr std::uint64_t kJitterFrames = 32;
 constexpr float kSettling = 4;           // distance to the goal within which detours shrink [m]
 constexpr float kStandingShare = 0.25f;  // priority of those that do not want to move
 
-/// The nearest walkers, ascending: the bits of the distance squared, which order as it does, above
-/// the slot, so that equally near ones are in the order of the grid.
-struct NearestWalkers {
-    std::array<std::uint64_t, kMaxNeighbors> found;
-    std::size_t count = 0;  ///< all that were added
-
-    NearestWalkers() { found.fill(~std::uint64_t{0}); }
-    [[nodiscard]] bool is_full() const { return count >= kMaxNeighbors; }
-    [[nodiscard]] std::size_t size() const { return std::min(count, kMaxNeighbors); }
-    [[nodiscard]] std::uint32_t slot(std::size_t i) const {
-        return static_cast<std::uint32_t>(found[i]);
-    }
-    [[nodiscard]] float distance2(std::size_t i) const {
-        return std::bit_cast<float>(static_cast<std::uint32_t>(found[i] >> 32));
-    }
-    /// Without branches, which would be mispredicted.
-    void add(std::uint32_t slot, float distance2) {
-        std::uint64_t moving = std::uint64_t{std::bit_cast<std::uint32_t>(distance2)} << 32 | slot;
-        for (std::uint64_t& kept : found) {
-            const std::uint64_t least = std::min(kept, moving);
-            moving = std::max(kept, moving);
-            kept = least;
-        }
-        ++count;
-    }
-};
-
 float standing_priority(const CrowdWalker& walker) {
     return walker.priority * (walker.wanted == Vec2(0) ? kStandingShare : 1.0f);
 }
 
 /// Where a walker would go without others: turned by its detour.
 Vec2 preferred_velocity(const CrowdWalker& walker) {
+    if (walker.detour == 0) {
+        return walker.wanted;
+    }
     const Vec2 turn = repeatable_cos_sin(walker.side * walker.detour);
     return {
         turn.x * walker.wanted.x - turn.y * walker.wanted.y,
         turn.y * walker.wanted.x + turn.x * walker.wanted.y};
 }
 
-/// Calls visit(slot, distance squared) for the others in the cells within `reach`.
-template <typename Visit>
-void each_near(const WalkerScratch& scratch, std::size_t slot, float reach, const Visit& visit) {
-    const Vec2 position = scratch.slots[slot].position;
-    const float* const xs = scratch.x.data();
-    const float* const ys = scratch.y.data();
-    each_run(scratch.grid, position, reach, [&](SlotRun run) {
-        for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            const float distance2 = square(xs[i] - position.x) + square(ys[i] - position.y);
-            if (i != slot) {
-                visit(i, distance2);
-            }
-        }
-    });
+Vec2 preferred_of(const WalkerScratch& scratch, std::size_t slot) {
+    return {scratch.columns.preferred_x[slot], scratch.columns.preferred_y[slot]};
 }
 
-NearestWalkers find_near_walkers(const WalkerScratch& scratch, std::size_t slot, float reach) {
-    NearestWalkers nearest;
-    const float limit2 = square(reach);
-    constexpr std::size_t kBatch = 64;
-    std::array<std::uint32_t, kBatch> slots;
-    std::array<float, kBatch> distances2;
+/// Half-planes that keep a walker from what is near; at most kMaxWalls.
+std::size_t find_walls(
+    const CrowdWalker& walker, std::span<const CrowdBarrier> barriers, float dt,
+    std::span<VelocityPlane> planes) {
     std::size_t count = 0;
-    const auto add_batch = [&] {
-        for (std::size_t i = 0; i < count; ++i) {
-            nearest.add(slots[i], distances2[i]);
-        }
-        count = 0;
-    };
-    each_near(scratch, slot, reach, [&](std::uint32_t i, float distance2) {
-        slots[count] = i;
-        distances2[count] = distance2;
-        count += distance2 <= limit2 ? 1 : 0;
-        if (count == kBatch) {
-            add_batch();
-        }
-    });
-    add_batch();
-    return nearest;
-}
-
-/// In dense crowds the nearest are in the cells around.
-NearestWalkers find_neighbors(const WalkerScratch& scratch, std::size_t slot) {
-    const CrowdWalker& walker = scratch.slots[slot];
-    std::uint32_t around = 0;
-    each_run(scratch.grid, walker.position, kCellSize, [&](SlotRun run) {
-        around += run.end - run.begin;
-    });
-    if (around > 2 * kMaxNeighbors && walker.range > kCellSize) {
-        const NearestWalkers nearest = find_near_walkers(scratch, slot, kCellSize);
-        if (nearest.is_full()) {
-            return nearest;
-        }
-    }
-    return find_near_walkers(scratch, slot, walker.range);
-}
-
-Vec2 choose_velocity(
-    const WalkerScratch& scratch, std::size_t slot, std::span<const CrowdBarrier> barriers,
-    float dt) {
-    const CrowdWalker& walker = scratch.slots[slot];
-    const NearestWalkers nearest = find_neighbors(scratch, slot);
-    std::array<VelocityPlane, kMaxVelocityPlanes> planes;
-    std::size_t count = 0;
+    const float horizon = std::max(kWallHorizon, dt);
     for (const CrowdBarrier& barrier : barriers) {
         const BarrierHit hit = find_barrier(barrier, walker.position);
         const float distance = hit.distance - walker.radius;
-        const float horizon = std::max(kWallHorizon, dt);
         if (distance < horizon * walker.max_speed && count < kMaxWalls) {
             planes[count++] = avoid_wall(hit.toward, distance, horizon);
         }
     }
-    const std::size_t walls = count;
-    const float weight = standing_priority(walker);
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-        const CrowdWalker& other = scratch.slots[nearest.slot(i)];
-        const float other_weight = standing_priority(other);
-        const bool overlaps =
-            nearest.distance2(i) < square(walker.radius + other.radius + kPersonalSpace);
-        planes[count++] = avoid_walker(
-            {walker.position, walker.velocity, walker.radius + kPersonalSpace},
-            {other.position, other.velocity, other.radius},
-            {.horizon = std::max(walker.horizon, dt),
-             .contact_time = std::max(kContactTime, dt),
-             .share = weight == other_weight ? 0.5f : other_weight / (weight + other_weight),
-             .side = walker.side == other.side ? walker.side : 0.0f,
-             .apart = overlaps ? parting_direction(walker.key, other.key) : Vec2(1, 0)});
-    }
-    return solve_velocity(
-        {planes.data(), count}, walls, preferred_velocity(walker), walker.max_speed);
+    return count;
 }
 
-/// Lists who may touch a range of slots in this step: a superset.
-void list_contacts(
-    const WalkerScratch& scratch, std::size_t begin, std::size_t end, float max_radius,
-    float max_move, WalkerScratch::Contacts& contacts) {
-    contacts.begins.clear();
-    contacts.others.clear();
-    for (std::size_t slot = begin; slot < end; ++slot) {
-        contacts.begins.push_back(static_cast<std::uint32_t>(contacts.others.size()));
-        const CrowdWalker& walker = scratch.slots[slot];
-        const float reach = walker.radius + max_radius + 2 * max_move;
-        each_near(scratch, slot, reach, [&](std::uint32_t i, float distance2) {
-            if (distance2 < square(reach)
-                && distance2 < square(walker.radius + scratch.slots[i].radius + 2 * max_move)) {
-                contacts.others.push_back(i);
-            }
-        });
+/// The velocity of the walker whose half-planes are in `lane`.
+Vec2 choose_velocity(
+    const CrowdWalker& walker, const Vec2& preferred, const WalkerPlanes& near, std::size_t lane,
+    std::span<const CrowdBarrier> barriers, float dt) {
+    std::array<VelocityPlane, kMaxVelocityPlanes> planes;
+    const std::size_t walls = find_walls(walker, barriers, dt, planes);
+    if (walls == 0 && near.is_met[lane] != 0) {
+        return {near.start_x[lane], near.start_y[lane]};
     }
-    contacts.begins.push_back(static_cast<std::uint32_t>(contacts.others.size()));
+    std::size_t count = walls;
+    for (std::size_t k = 0; k < near.count[lane]; ++k) {
+        planes[count++] = {{near.normal_x[k][lane], near.normal_y[k][lane]}, near.offset[k][lane]};
+    }
+    return solve_velocity({planes.data(), count}, walls, preferred, walker.max_speed);
 }
 
 /// Calls visit(other) for those that may touch `slot`.
 template <typename Visit>
 void each_contact(const WalkerScratch& scratch, std::size_t slot, const Visit& visit) {
-    const WalkerScratch::Contacts& contacts = scratch.contacts[slot / kCrowdGrain];
+    const WalkerContacts& contacts = scratch.contacts[slot / kCrowdGrain];
     const std::size_t i = slot % kCrowdGrain;
     for (std::uint32_t k = contacts.begins[i]; k < contacts.begins[i + 1]; ++k) {
         visit(contacts.others[k]);
@@ -309,17 +209,79 @@ void hold_back(WalkerScratch& scratch) {
 }
 
 /// The detour grows while a walker gets on too slowly, and fades when it gets on.
-float next_detour(const CrowdWalker& walker, const Vec2& velocity, float dt) {
+float next_detour(
+    const CrowdWalker& walker, const Vec2& preferred, const Vec2& velocity, float dt) {
     const float speed2 = glm::dot(walker.wanted, walker.wanted);
     if (speed2 == 0) {
         return 0;
     }
-    const float progress = glm::dot(velocity, preferred_velocity(walker)) / speed2;
+    const float progress = glm::dot(velocity, preferred) / speed2;
     const float rate = progress < kEnoughProgress
                            ? kDetourGrowth * (kEnoughProgress - progress) / kEnoughProgress
                            : -kDetourFading * (progress - kEnoughProgress) / (1 - kEnoughProgress);
     const float limit = kMaxDetour * std::min(walker.distance / kSettling, 1.0f);
     return std::clamp(walker.detour + rate * dt, 0.0f, limit);
+}
+
+/// Sorts the walkers into the grid and its columns.
+void sort_walkers(std::span<const CrowdWalker> walkers, float dt, WalkerScratch& scratch) {
+    const std::size_t count = walkers.size();
+    scratch.points.resize(count);
+    scratch.keys.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        scratch.points[i] = walkers[i].position;
+        scratch.keys[i] = walkers[i].key;
+    }
+    build_agent_grid(scratch.points, scratch.keys, kCellSize, scratch.grid);
+    scratch.slots.resize(count);
+    scratch.columns.resize(count);
+    scratch.moved.resize(count);
+    scratch.pushed.resize(count);
+    scratch.contacts.resize((count - 1) / kCrowdGrain + 1);
+    scratch.deepest.assign(scratch.contacts.size(), 0);
+    WalkerColumns& columns = scratch.columns;
+    each_slot_range(count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const CrowdWalker& walker = walkers[scratch.grid.order[i]];
+            scratch.slots[i] = walker;
+            columns.x[i] = walker.position.x;
+            columns.y[i] = walker.position.y;
+            columns.vx[i] = walker.velocity.x;
+            columns.vy[i] = walker.velocity.y;
+            columns.radius[i] = walker.radius;
+            columns.weight[i] = standing_priority(walker);
+            columns.side[i] = walker.side;
+            columns.range[i] = walker.range;
+            const Vec2 preferred = preferred_velocity(walker);
+            columns.preferred_x[i] = preferred.x;
+            columns.preferred_y[i] = preferred.y;
+            columns.max_speed[i] = walker.max_speed;
+            columns.horizon[i] = std::max(walker.horizon, dt);
+            columns.keys[i] = walker.key;
+        }
+    });
+}
+
+/// New positions of a range of slots without push-out.
+void move_range(
+    WalkerScratch& scratch, const WalkerScene& scene, std::span<const CrowdBarrier> barriers,
+    float dt, std::size_t begin, std::size_t end) {
+    WalkerContacts& contacts = scratch.contacts[begin / kCrowdGrain];
+    contacts.begins.clear();
+    contacts.others.clear();
+    WalkerPlanes planes;
+    for (std::size_t batch = begin; batch < end; batch += kWalkerBatch) {
+        const std::size_t batch_end = std::min(batch + kWalkerBatch, end);
+        avoid_neighbors(scene, batch, batch_end, contacts, planes);
+        for (std::size_t i = batch; i < batch_end; ++i) {
+            const std::size_t lane = i - batch;
+            const CrowdWalker& walker = scratch.slots[i];
+            const Vec2 velocity =
+                choose_velocity(walker, preferred_of(scratch, i), planes, lane, barriers, dt);
+            scratch.moved[i] = walker.position + dt * velocity;
+        }
+    }
+    contacts.begins.push_back(static_cast<std::uint32_t>(contacts.others.size()));
 }
 
 }  // namespace
@@ -344,54 +306,41 @@ void step_crowd(
     if (walkers.empty() || !(dt > 0)) {
         return;
     }
-    const std::size_t count = walkers.size();
-    scratch.points.resize(count);
-    scratch.keys.resize(count);
     float max_radius = 0;
     float max_speed = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        scratch.points[i] = walkers[i].position;
-        scratch.keys[i] = walkers[i].key;
-        max_radius = std::max(max_radius, walkers[i].radius);
-        max_speed = std::max(max_speed, walkers[i].max_speed);
+    for (const CrowdWalker& walker : walkers) {
+        max_radius = std::max(max_radius, walker.radius);
+        max_speed = std::max(max_speed, walker.max_speed);
     }
-    build_agent_grid(scratch.points, scratch.keys, kCellSize, scratch.grid);
-    scratch.slots.resize(count);
-    scratch.x.resize(count);
-    scratch.y.resize(count);
-    scratch.moved.resize(count);
-    scratch.pushed.resize(count);
-    scratch.contacts.resize((count - 1) / kCrowdGrain + 1);
-    scratch.deepest.assign(scratch.contacts.size(), 0);
-    for (std::size_t i = 0; i < count; ++i) {
-        scratch.slots[i] = walkers[scratch.grid.order[i]];
-        scratch.x[i] = scratch.slots[i].position.x;
-        scratch.y[i] = scratch.slots[i].position.y;
-    }
+    sort_walkers(walkers, dt, scratch);
     const float max_move = max_speed * dt + 2 * kPushSkin;
-    each_slot_range(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec2 velocity = choose_velocity(scratch, i, barriers, dt);
-            scratch.moved[i] = scratch.slots[i].position + dt * velocity;
-        }
-        list_contacts(
-            scratch, begin, end, max_radius, max_move, scratch.contacts[begin / kCrowdGrain]);
+    const WalkerScene scene = {
+        .grid = scratch.grid,
+        .columns = scratch.columns,
+        .contact_time = std::max(kContactTime, dt),
+        .personal = kPersonalSpace,
+        .contact_reach = 2 * max_move,
+        .max_radius = max_radius};
+    each_slot_range(walkers.size(), [&](std::size_t begin, std::size_t end) {
+        move_range(scratch, scene, barriers, dt, begin, end);
     });
     scratch.holds = 0;
     if (!push_out_overlaps(scratch, barriers, max_move)) {
         hold_back(scratch);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        CrowdWalker& walker = walkers[scratch.grid.order[i]];
-        Vec2 velocity = (scratch.moved[i] - walker.position) / dt;
-        const float speed2 = glm::dot(velocity, velocity);
-        if (speed2 > square(walker.max_speed)) {
-            velocity *= walker.max_speed / std::sqrt(speed2);
+    each_slot_range(walkers.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            CrowdWalker& walker = walkers[scratch.grid.order[i]];
+            Vec2 velocity = (scratch.moved[i] - walker.position) / dt;
+            const float speed2 = glm::dot(velocity, velocity);
+            if (speed2 > square(walker.max_speed)) {
+                velocity *= walker.max_speed / std::sqrt(speed2);
+            }
+            walker.detour = next_detour(walker, preferred_of(scratch, i), velocity, dt);
+            walker.velocity = velocity;
+            walker.position = scratch.moved[i];
         }
-        walker.detour = next_detour(walker, velocity, dt);
-        walker.velocity = velocity;
-        walker.position = scratch.moved[i];
-    }
+    });
 }
 
 }  // namespace limn

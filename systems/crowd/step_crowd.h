@@ -3,7 +3,7 @@
 #include "ecs/base/math.h"
 #include "systems/crowd/agent_grid.h"
 #include "systems/crowd/crowd_barrier.h"
-#include "systems/crowd/orca.h"
+#include "systems/crowd/walker_kernels.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +34,6 @@ struct CrowdWalker {
 };
 
 inline constexpr float kMaxDetour = 1.2f;
-inline constexpr std::size_t kMaxNeighbors = 10;  ///< that a walker avoids: the nearest
 
 /// What a walker wants with a jitter that lasts half a second, stronger where it is blocked: it
 /// breaks symmetries that would hold a crowd up forever. 0 stays 0.
@@ -46,18 +45,12 @@ struct WalkerScratch {
     AgentGrid grid{};
     std::vector<Vec2> points{};
     std::vector<std::uint64_t> keys{};
-    std::vector<float> x{};  ///< of the slots, and y
-    std::vector<float> y{};
     std::vector<CrowdWalker> slots{};  ///< the walkers in the order of the grid
+    WalkerColumns columns{};           ///< likewise
     std::vector<Vec2> moved{};         ///< their new positions
     std::vector<Vec2> pushed{};
-    /// Who may touch whom in this step, by ranges of kCrowdGrain slots.
-    struct Contacts {
-        std::vector<std::uint32_t> begins{};
-        std::vector<std::uint32_t> others{};
-    };
-    std::vector<Contacts> contacts{};
-    std::vector<float> deepest{};  ///< overlap by range [m]
+    std::vector<WalkerContacts> contacts{};  ///< by ranges of kCrowdGrain slots
+    std::vector<float> deepest{};            ///< overlap by range [m]
     std::vector<std::uint8_t> held{};
     int passes = 0;  ///< of the last push-out
     int holds = 0;   ///< walkers that it kept where they were
