@@ -32,6 +32,11 @@ layout(location = 10) in vec4 relief_position;
 layout(location = 11) in vec2 relief_curvature;
 #endif
 
+// Shadow maps have this relief, found in their own mip level.
+#if defined(OFF_MESH) && !defined(RELIEF_BOTTOM) && !defined(RELIEF_BOX)
+#define RELIEF_CAST
+#endif
+
 float relief_lod = 0.0;  // of undisplaced texture coordinates: those found by the search are not smooth
 #define RELIEF_TEXEL(at) textureLod(material_maps[RELIEF_MAP], vec3(at, map_layer(map_layers, kReliefSlot)), relief_lod)
 #ifdef RELIEF_BOX
@@ -108,7 +113,11 @@ void find_relief_lod() {
     vec2 size = vec2(textureSize(material_maps[RELIEF_MAP], 0).xy);
     vec2 dx = map_gradient(kReliefSlot, dFdx(uv)) * size;
     vec2 dy = map_gradient(kReliefSlot, dFdy(uv)) * size;
-    relief_lod = max(0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12)), 0.0);
+    float level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12));
+#ifdef RELIEF_CAST
+    level -= 1.0;  // nearer to what the shadow map has, or the difference would shadow itself
+#endif
+    relief_lod = max(level, 0.0);
 }
 #ifdef RELIEF_BOX
 #include "lib/relief_box.glsl"
