@@ -50,7 +50,9 @@ LIMN_FIELDS(Ragdoll) {
     LIMN_FIELD(gravity, "factor on 9.81 m/s^2 downwards", "", -100, 100);
     LIMN_FIELD(stiffness, "of muscles that hold the animated pose: 0 limp, 1 stiff", "", 0, 1);
     LIMN_FIELD(collapse, "time in which the muscles give way after the switch", "s", 0, 60);
-    LIMN_FIELD(get_up, "time in which the pose goes over into the animation again", "s", 0, 60);
+    LIMN_FIELD(
+        get_up, "time in which it gets into a crouch, then up into the animation again", "s", 0,
+        60);
     LIMN_FIELD(fields, "factor on the accelerations of each force_field", "", -100, 100);
     LIMN_FIELD(
         buoyancy, "density of water over that of the body; 0: falls through water", "", 0, 100);

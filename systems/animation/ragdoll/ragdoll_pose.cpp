@@ -2,6 +2,7 @@
 
 #include "ecs/base/rotation.h"
 #include "systems/animation/ik/joint_tree.h"
+#include "systems/animation/ragdoll/crouch.h"
 
 #include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -13,6 +14,14 @@
 
 namespace limn {
 namespace {
+
+constexpr float kCrouchTime =
+    0.45f;  // what is left of the time to get up when the feet carry the body
+
+float smooth_step(float x) {
+    const float u = std::clamp(x, 0.0f, 1.0f);
+    return u * u * (3 - 2 * u);
+}
 
 Quat rotation_part(const Affine& a) {
     Mat3 axes;
@@ -38,13 +47,17 @@ Vec3 root_translation(
 
 void apply_ragdoll(const SkeletonData& skeleton, const RagdollState& state, LocalPose& pose) {
     const std::size_t bones = state.joints.size();
-    const float linear = std::clamp(finite_or(state.weight, 0), 0.0f, 1.0f);
-    const float weight = linear * linear * (3 - 2 * linear);
-    if (!(weight > 0) || bones == 0 || state.positions.size() != bones
+    const float left = std::clamp(finite_or(state.weight, 0), 0.0f, 1.0f);
+    if (!(left > 0) || bones == 0 || state.positions.size() != bones
         || state.rotations.size() != bones || state.centers.size() != bones
         || state.joints.back() >= pose.size()) {
         return;
     }
+    // Up again: into a crouch first, then from the feet.
+    if (left < 1) {
+        crouch(skeleton, smooth_step(left / kCrouchTime), pose);
+    }
+    const float weight = smooth_step((left - kCrouchTime) / (1 - kCrouchTime));
     thread_local std::vector<Quat> turns;  // of the joints in the character's space, by physics
     turns.resize(pose.size());
     const Quat to_character = rotation_part(state.character_from_world);
