@@ -56,12 +56,12 @@ Vec2 preferred_of(const WalkerScratch& scratch, std::size_t slot) {
 
 /// Half-planes that keep a walker from what is near; at most kMaxWalls.
 std::size_t find_walls(
-    const CrowdWalker& walker, std::span<const CrowdBarrier> barriers, float dt,
+    const CrowdWalker& walker, const BarrierGrid& barriers, float dt,
     std::span<VelocityPlane> planes) {
     std::size_t count = 0;
     const float horizon = std::max(kWallHorizon, dt);
-    for (const CrowdBarrier& barrier : barriers) {
-        const BarrierHit hit = find_barrier(barrier, walker.position);
+    for (const std::uint32_t i : find_near_barriers(barriers, walker.position)) {
+        const BarrierHit hit = find_barrier(barriers.barriers[i], walker.position);
         const float distance = hit.distance - walker.radius;
         if (distance < horizon * walker.max_speed && count < kMaxWalls) {
             planes[count++] = avoid_wall(hit.toward, distance, horizon);
@@ -73,7 +73,7 @@ std::size_t find_walls(
 /// The velocity of the walker whose half-planes are in `lane`.
 Vec2 choose_velocity(
     const CrowdWalker& walker, const Vec2& preferred, const WalkerPlanes& near, std::size_t lane,
-    std::span<const CrowdBarrier> barriers, float dt) {
+    const BarrierGrid& barriers, float dt) {
     std::array<VelocityPlane, kMaxVelocityPlanes> planes;
     const std::size_t walls = find_walls(walker, barriers, dt, planes);
     if (walls == 0 && near.is_met[lane] != 0) {
@@ -98,8 +98,7 @@ void each_contact(const WalkerScratch& scratch, std::size_t slot, const Visit& v
 
 /// A pass of Jacobi's method over a slot: its new position, and the overlap that it had.
 Vec2 push_from_contacts(
-    const WalkerScratch& scratch, std::size_t slot, std::span<const CrowdBarrier> barriers,
-    float max_move, float& deepest) {
+    const WalkerScratch& scratch, std::size_t slot, float max_move, float& deepest) {
     const CrowdWalker& walker = scratch.slots[slot];
     const Vec2 position = scratch.moved[slot];
     const float weight = standing_priority(walker);
@@ -124,8 +123,8 @@ Vec2 push_from_contacts(
     if (count > 0) {
         moved += push * (count > 2 ? 2 / count : 1.0f);
     }
-    for (const CrowdBarrier& barrier : barriers) {
-        const BarrierHit hit = find_barrier(barrier, moved);
+    for (const std::uint32_t i : find_near_barriers(scratch.barriers, moved)) {
+        const BarrierHit hit = find_barrier(scratch.barriers.barriers[i], moved);
         const float inside = walker.radius - hit.distance;
         if (inside > 0) {
             moved -= inside * hit.toward;
@@ -162,15 +161,14 @@ void each_slot_range(std::size_t count, const Body& body) {
 }
 
 /// Whether nobody overlaps afterwards; some may where it takes more passes.
-bool push_out_overlaps(
-    WalkerScratch& scratch, std::span<const CrowdBarrier> barriers, float max_move) {
+bool push_out_overlaps(WalkerScratch& scratch, float max_move) {
     const std::size_t count = scratch.slots.size();
     scratch.passes = 0;
     while (scratch.passes < kMaxPushes) {
         each_slot_range(count, [&](std::size_t begin, std::size_t end) {
             float deepest = 0;
             for (std::size_t i = begin; i < end; ++i) {
-                scratch.pushed[i] = push_from_contacts(scratch, i, barriers, max_move, deepest);
+                scratch.pushed[i] = push_from_contacts(scratch, i, max_move, deepest);
             }
             scratch.deepest[begin / kCrowdGrain] = deepest;
         });
@@ -264,8 +262,8 @@ void sort_walkers(std::span<const CrowdWalker> walkers, float dt, WalkerScratch&
 
 /// New positions of a range of slots without push-out.
 void move_range(
-    WalkerScratch& scratch, const WalkerScene& scene, std::span<const CrowdBarrier> barriers,
-    float dt, std::size_t begin, std::size_t end) {
+    WalkerScratch& scratch, const WalkerScene& scene, float dt, std::size_t begin,
+    std::size_t end) {
     WalkerContacts& contacts = scratch.contacts[begin / kCrowdGrain];
     contacts.begins.clear();
     contacts.others.clear();
@@ -276,8 +274,8 @@ void move_range(
         for (std::size_t i = batch; i < batch_end; ++i) {
             const std::size_t lane = i - batch;
             const CrowdWalker& walker = scratch.slots[i];
-            const Vec2 velocity =
-                choose_velocity(walker, preferred_of(scratch, i), planes, lane, barriers, dt);
+            const Vec2 velocity = choose_velocity(
+                walker, preferred_of(scratch, i), planes, lane, scratch.barriers, dt);
             scratch.moved[i] = walker.position + dt * velocity;
         }
     }
@@ -314,6 +312,8 @@ void step_crowd(
     }
     sort_walkers(walkers, dt, scratch);
     const float max_move = max_speed * dt + 2 * kPushSkin;
+    update_barrier_grid(
+        barriers, max_radius + max_move + std::max(kWallHorizon, dt) * max_speed, scratch.barriers);
     const WalkerScene scene = {
         .grid = scratch.grid,
         .columns = scratch.columns,
@@ -322,10 +322,10 @@ void step_crowd(
         .contact_reach = 2 * max_move,
         .max_radius = max_radius};
     each_slot_range(walkers.size(), [&](std::size_t begin, std::size_t end) {
-        move_range(scratch, scene, barriers, dt, begin, end);
+        move_range(scratch, scene, dt, begin, end);
     });
     scratch.holds = 0;
-    if (!push_out_overlaps(scratch, barriers, max_move)) {
+    if (!push_out_overlaps(scratch, max_move)) {
         hold_back(scratch);
     }
     each_slot_range(walkers.size(), [&](std::size_t begin, std::size_t end) {

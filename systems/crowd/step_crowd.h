@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "systems/crowd/agent_grid.h"
+#include "systems/crowd/barrier_grid.h"
 #include "systems/crowd/crowd_barrier.h"
 #include "systems/crowd/walker_kernels.h"
 
@@ -43,6 +44,7 @@ jittered_velocity(const CrowdWalker& walker, std::uint64_t seed, std::uint64_t f
 /// Memory of step_crowd(), reused from step to step; holds no state.
 struct WalkerScratch {
     AgentGrid grid{};
+    BarrierGrid barriers{};
     std::vector<Vec2> points{};
     std::vector<std::uint64_t> keys{};
     std::vector<CrowdWalker> slots{};  ///< the walkers in the order of the grid

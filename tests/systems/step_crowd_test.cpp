@@ -257,6 +257,62 @@ TEST_CASE("crowd: no walkers, no time, no speed, and a step of a second") {
     CHECK(glm::distance(crowd.walkers[1].position, before[1].position) < 1);
 }
 
+TEST_CASE("crowd: who is inside a wall comes out, also in the middle and where two cross") {
+    for (const float dt : {kStep, 1.0f}) {
+        Crowd crowd;
+        crowd.barriers = {
+            {.center = {0, 0}, .half = {3, 0.5f}},
+            {.center = {3, 0}, .half = {0.5f, 3}},
+            {.center = {-8, 0}, .radius = 1}};
+        for (const Vec2& place : {Vec2(0, 0), Vec2(3, 0), Vec2(2.9f, 0.2f), Vec2(-8, 0)}) {
+            crowd.add(place, {20, 0});
+        }
+        for (int i = 0; i < 240; ++i) {
+            crowd.step(dt);
+            for (const CrowdWalker& walker : crowd.walkers) {
+                REQUIRE(is_finite(walker.position));
+            }
+        }
+        for (const CrowdWalker& walker : crowd.walkers) {
+            for (const CrowdBarrier& barrier : crowd.barriers) {
+                CHECK(find_barrier(barrier, walker.position).distance > walker.radius - 2e-3f);
+            }
+        }
+    }
+}
+
+TEST_CASE("crowd: a step of a second does not pass a wall, however thin") {
+    Crowd crowd;
+    crowd.barriers = {{.center = {0, 0}, .half = {0.001f, 50}}};
+    for (int i = 0; i < 12; ++i) {
+        const auto k = static_cast<float>(i);
+        crowd.add({-4 - 0.1f * k, k}, {4, k});
+    }
+    for (int i = 0; i < 40; ++i) {
+        crowd.step(1);
+        for (const CrowdWalker& walker : crowd.walkers) {
+            REQUIRE(walker.position.x < 0);
+        }
+    }
+}
+
+TEST_CASE("crowd: walkers of radius 0 walk, alone, at one place, and through a throng") {
+    Crowd crowd;
+    crowd.add({0, 0}, {8, 0}, 1, 0);
+    crowd.add({0, 0}, {8, 0}, 1, 0);
+    for (int i = 0; i < 5; ++i) {
+        crowd.add({4, static_cast<float>(i) - 2}, {4, static_cast<float>(i) - 2});
+    }
+    for (int i = 0; i < 900; ++i) {
+        crowd.step();
+        for (const CrowdWalker& walker : crowd.walkers) {
+            REQUIRE(is_finite(walker.position + walker.velocity));
+        }
+    }
+    CHECK(crowd.arrived());
+    CHECK(crowd.overlaps() == 0);
+}
+
 TEST_CASE("crowd: of two walkers the one with priority evades less") {
     Crowd crowd;
     crowd.add({-5, 0.05f}, {5, 0.05f});
