@@ -31,13 +31,26 @@ void simplify_mesh(MeshData& mesh, std::size_t triangles) {
     keep_triangles(mesh, std::move(indices));
 }
 
+void merge_mesh(MeshData& mesh, std::size_t triangles) {
+    if (3 * triangles >= mesh.indices.size()) {
+        return;
+    }
+    constexpr float kAnyError = 1.0f;
+    std::vector<std::uint32_t> indices(mesh.indices.size());
+    indices.resize(meshopt_simplifySloppy(
+        indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.positions[0].x,
+        mesh.positions.size(), sizeof(Vec3), 3 * triangles, kAnyError));
+    keep_triangles(mesh, std::move(indices));
+}
+
 MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets) {
     if (shape.mesh.index >= assets.meshes.size()) {
         return {};
     }
     MeshData mesh = assets.meshes[shape.mesh.index];
     mesh.pieces.clear();
-    simplify_mesh(mesh, static_cast<std::size_t>(std::max(shape.triangles, 4)));
+    const auto triangles = static_cast<std::size_t>(std::max(shape.triangles, 4));
+    shape.merge ? merge_mesh(mesh, triangles) : simplify_mesh(mesh, triangles);
     update_bounds(mesh);
     return mesh;
 }

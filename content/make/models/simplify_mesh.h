@@ -12,14 +12,22 @@ namespace limn {
 /// others keep their positions, and closed surfaces stay closed.
 void simplify_mesh(MeshData& mesh, std::size_t triangles);
 
+/// Merges vertices in cells of a grid until at most `triangles` are left, for what is small on
+/// screen: surfaces may join, holes and fingers vanish. Vertices that are left keep everything.
+void merge_mesh(MeshData& mesh, std::size_t triangles);
+
 struct SimplifiedShape {
     MeshId mesh;
     int triangles = 300;
+    bool merge = false;
 };
 
 LIMN_FIELDS(SimplifiedShape) {
     LIMN_FIELD(mesh, "the mesh to simplify, by name; must come earlier in the file");
     LIMN_FIELD(triangles, "approximate number of triangles to keep", "", 4, 1000000);
+    LIMN_FIELD(
+        merge, "lets surfaces join and details vanish: a few hundred triangles of anything, for "
+               "what is far away");
 }
 
 /// A simplified copy of another mesh of the level, as a control surface for it (surface_binding),

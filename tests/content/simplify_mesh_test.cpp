@@ -1,0 +1,54 @@
+#include "content/make/models/simplify_mesh.h"
+#include "content/make/person/person.h"
+#include "ecs/components/surface.h"
+#include "tests/near.h"
+#include "tests/technique.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace limn::simplify_mesh_test {
+
+using test::near;
+
+namespace {
+
+Bounds box_of(const MeshData& mesh) {
+    Bounds box = {mesh.positions[0], mesh.positions[0]};
+    for (const Vec3& p : mesh.positions) {
+        box.min = glm::min(box.min, p);
+        box.max = glm::max(box.max, p);
+    }
+    return box;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "merge: a person of a few hundred triangles keeps size, skin and colors"
+    * technique("engine.lod-mesh")) {
+    Assets assets;
+    assets.meshes.push_back(make_person({.seed = 3, .head_triangles = 800, .triangles = 3000}));
+    const MeshData& person = assets.meshes[0];
+    const Bounds whole = box_of(person);
+    const MeshData kept = make_simplified({.mesh = {0}, .triangles = 150}, assets);
+    CHECK(kept.indices.size() > 3 * 1000);  // closed parts stay closed
+    for (const int triangles : {600, 150, 60}) {
+        const MeshData merged =
+            make_simplified({.mesh = {0}, .triangles = triangles, .merge = true}, assets);
+        CHECK(merged.indices.size() <= 3 * static_cast<std::size_t>(triangles));
+        CHECK(merged.indices.size() >= 3 * static_cast<std::size_t>(triangles) / 2);
+        CHECK(merged.positions.size() < merged.indices.size());
+        CHECK(merged.colors.size() == merged.positions.size());
+        CHECK(merged.skin.first.size() == merged.positions.size() + 1);
+        const Bounds box = box_of(merged);
+        CHECK(box.max.y - box.min.y == near(whole.max.y - whole.min.y).epsilon(0.12));
+        CHECK(
+            *std::max_element(merged.indices.begin(), merged.indices.end())
+            < merged.positions.size());
+    }
+}
+
+}  // namespace limn::simplify_mesh_test
