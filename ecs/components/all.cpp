@@ -72,6 +72,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/vertex_offset.h"
 #include "ecs/components/vignette.h"
 #include "ecs/components/walk.h"
 #include "ecs/components/water.h"
@@ -169,6 +170,7 @@ void register_all_components() {
     register_component<MorphWeights>();
     register_component<MorphPlayer>();
     register_component<Deformed>();
+    register_component<VertexOffsetSkinning>();
     register_component<Deformers>();
     register_component<DeformerState>();
     register_component<PullableSkin>();

@@ -1,7 +1,7 @@
 // Morphing and skinning of all instances in one dispatch, one invocation per vertex: adds morph targets and applies
 // joints (lib/skinning.glsl), for the current and the previous frame. Definition:
 //   DEFORM_FLAGS  kDeform*
-// Techniques: char.skin-gpu, face.bids-rebuild, wrinkle.compression.face-model
+// Techniques: char.skin-gpu, char.skin-vertex-offset, face.bids-rebuild, wrinkle.compression.face-model
 #version 450
 #include "deform_gpu.h"
 #include "lib/skinning.glsl"
@@ -92,6 +92,22 @@ Vertex move_by_rows(Vertex v, Lists lists, int palette) {
     return Vertex(rows_point(sum, v.position), normal, rows_vector(sum, v.tangent));
 }
 
+// v' = sum w M o, n' = sum w M N, t' = sum w M T, normalized by main().
+Vertex move_by_offsets(Lists lists, int palette) {
+    Vertex sum = Vertex(vec3(0.0), vec3(0.0), vec3(0.0));
+    for (int i = lists.influence; i < lists.influence_end; i += int(kJointOffsetTexels)) {
+        uvec4 a = texelFetch(rest, lists.texel + i);
+        uvec4 b = texelFetch(rest, lists.texel + i + 1);
+        uvec4 c = texelFetch(rest, lists.texel + i + 2);
+        Rows joint = fetch_rows(palette, b.w);
+        float w = uintBitsToFloat(a.w);
+        sum.position += w * rows_point(joint, uintBitsToFloat(a.xyz));
+        sum.normal += w * rows_vector(joint, uintBitsToFloat(b.xyz));
+        sum.tangent += w * rows_vector(joint, uintBitsToFloat(c.xyz));
+    }
+    return sum;
+}
+
 Dual fetch_dual(int palette, uint joint) {
     int texel = palette + 2 * int(joint);
     return Dual(texelFetch(palettes, texel), texelFetch(palettes, texel + 1));
@@ -145,6 +161,9 @@ Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint fir
     }
     if ((kFlags & kDeformJoints) == 0u || lists.influence == lists.influence_end) {
         return v;
+    }
+    if ((kFlags & kDeformOffsets) != 0u) {
+        return move_by_offsets(lists, int(palette));
     }
     return (kFlags & kDeformDual) != 0u ? move_by_duals(v, lists, int(palette))
                                         : move_by_rows(v, lists, int(palette));

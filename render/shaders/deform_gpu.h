@@ -5,6 +5,8 @@
 // three more per vertex - patch, u, v, offset, normal, tangent (surface_anchors.h); then influences, two per texel -
 // joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
 // 16-bit fractions of kMaxUnitDifference. Indices into these lists count texels from the beginning of the block.
+// With kDeformOffsets influences are three texels each, in the space of the joint: position and weight, normal and
+// joint, tangent.
 
 #ifdef __cplusplus
 #pragma once
@@ -15,6 +17,7 @@ namespace limn::layout {
 const uint kRestTexels = 3u;    // per vertex
 const uint kOnPatchTexels = 3u;   // per vertex on patches
 const uint kOffsetTexels = 2u;  // per offset of a morph target
+const uint kJointOffsetTexels = 3u;  // per influence, with kDeformOffsets
 const float kMaxUnitDifference = 2.0; // largest difference of two unit vectors, by component
 
 // One instance to deform: three texels.
@@ -46,6 +49,7 @@ const uint kDeformDual = 16u;       // of dual quaternions
 const uint kDeformMorphs = 32u;     // has morph weights, one per target
 const uint kDeformControls = 64u;   // has deformers
 const uint kDeformPatches = 128u;   // is on the patches of a surface
+const uint kDeformOffsets = 256u;   // has vertices in the spaces of their joints
 
 // Bindings.
 const uint kDeformJobsUnit = 0u;

@@ -4,6 +4,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/vertex_offset.h"
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_comparison.h"
 #include "ecs/world.h"
@@ -19,7 +20,7 @@
 #include <algorithm>
 #include <bit>
 
-// Techniques: char.skin-gpu
+// Techniques: char.skin-gpu, char.skin-vertex-offset
 
 namespace limn {
 namespace {
@@ -178,7 +179,17 @@ bool DeformedList::resolve(
     entry.deformers = source.deformers;
     entry.surface = source.surface;
     fault = std::move(source.fault);
+    entry.by_offsets =
+        fault.empty() && entry.skin != nullptr && entry.settings.skinning == Skinning::Linear
+        && world.has<VertexOffsetSkinning>(entry.entity) && entry.deformers == nullptr
+        && entry.surface == nullptr && entry.rest->bounds.morphs.empty();
     return fault.empty();
+}
+
+const RestMesh&
+DeformedList::rest_of(const World& world, const Assets& assets, const Entry& entry) {
+    return entry.by_offsets ? rest_.get_joint_offsets(assets, entry.mesh, entry.settings.skin)
+                            : rest_.get(assets, entry.mesh, anchors_of(world, entry.entity));
 }
 
 void DeformedList::find_wrinkles(
@@ -221,6 +232,15 @@ void DeformedList::find_wrinkles(
     }
 }
 
+void DeformedList::make_entry_palette(
+    const Entry& entry, const StepTime& time, std::vector<Affine>& palette) {
+    if (entry.by_offsets) {
+        make_joint_palette(entry.skin, entry.pose, time, palette);
+    } else {
+        make_palette(entry.skin, entry.pose, entry.settings.skinning, time, palette);
+    }
+}
+
 void DeformedList::evaluate(Entry& entry) const {
     const Deformed& settings = entry.settings;
     const auto hash_shape = [&](float alpha) {
@@ -228,6 +248,7 @@ void DeformedList::evaluate(Entry& entry) const {
         shape = hash_combine(shape, entry.mesh_version);
         shape = hash_combine(shape, static_cast<std::uint64_t>(settings.skinning));
         shape = hash_combine(shape, settings.first_morph);
+        shape = entry.by_offsets ? hash_combine(shape, 1) : shape;
         if (entry.skin != nullptr) {
             shape = hash_combine(shape, hash_at(entry.pose->previous, entry.pose->joints, alpha));
             shape ^= hash_before_jumps(entry.pose->jumps, alpha_);
@@ -261,7 +282,7 @@ void DeformedList::evaluate(Entry& entry) const {
     }
     entry.evaluated = entry.shape;
     const StepTime now = {alpha_, alpha_};
-    make_palette(entry.skin, entry.pose, settings.skinning, now, entry.palette);
+    make_entry_palette(entry, now, entry.palette);
     make_morph_weights(
         entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), now, entry.weights);
     entry.controls = make_controls(entry.deformers, alpha_);
@@ -321,7 +342,7 @@ void DeformedList::update(
         wrinkle_columns(world.find_resource<WrinkleComparison>());
     for (const std::uint32_t i : active_) {
         Entry& entry = entries_[i];
-        entry.rest = &rest_.get(*assets, entry.mesh, anchors_of(world, entry.entity));
+        entry.rest = &rest_of(world, *assets, entry);
         find_wrinkles(world, columns, eye, entry);
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
@@ -390,6 +411,7 @@ std::uint32_t DeformedList::flags_of(const Entry& entry) {
     if (entry.skin != nullptr) {
         flags |= layout::kDeformJoints;
         flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
+        flags |= entry.by_offsets ? layout::kDeformOffsets : 0u;
     }
     return flags | (entry.weights.empty() ? 0u : layout::kDeformMorphs)
            | (entry.controls.empty() ? 0u : layout::kDeformControls)
@@ -422,7 +444,7 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
         std::vector<Affine> palette;
         std::vector<float> weights;
         const StepTime then = {previous_alpha_, alpha_};
-        make_palette(entry.skin, entry.pose, settings.skinning, then, palette);
+        make_entry_palette(entry, then, palette);
         make_morph_weights(entry.morphs, settings.first_morph, entry.weights.size(), then, weights);
         job.previous_palette = add_palette(palette);
         job.previous_weights = add_weights(weights);

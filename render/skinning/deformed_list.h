@@ -21,6 +21,7 @@ namespace limn {
 
 class MeshPool;
 class World;
+struct StepTime;
 struct SurfaceBindingState;
 
 // Tracks the deformed instances of a frame, where their vertices are stored, and which must be
@@ -122,9 +123,10 @@ class DeformedList {
         Entity entity;
         std::uint32_t mesh_version = 0;
         Deformed settings;
-        bool found = false;      ///< found by this update
-        bool active = false;     ///< deformed in this frame
-        bool requested = false;  ///< in this frame
+        bool by_offsets = false;  ///< has vertices in the spaces of its joints
+        bool found = false;       ///< found by this update
+        bool active = false;      ///< deformed in this frame
+        bool requested = false;   ///< in this frame
         bool previous_requested = false;
         bool allocated = false;  ///< has vertices in DeformedVertices
         std::uint32_t first_vertex = 0;
@@ -152,9 +154,12 @@ class DeformedList {
     Entry& entry_of(Entity entity);
     /// False, with the reason in `fault`, if it is drawn in rest pose.
     bool resolve(const World& world, const Assets& assets, Entry& entry, std::string& fault);
+    const RestMesh& rest_of(const World& world, const Assets& assets, const Entry& entry);
     void find_wrinkles(
         const World& world, const std::vector<WrinkleMethod>& columns, const Vec3& eye,
         Entry& entry) const;
+    static void
+    make_entry_palette(const Entry& entry, const StepTime& time, std::vector<Affine>& palette);
     void evaluate(Entry& entry) const;
     void release(Entry& entry);
     void report(const std::string& fault);

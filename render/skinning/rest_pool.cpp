@@ -1,11 +1,14 @@
 #include "render/skinning/rest_pool.h"
 
+#include "render/geometry/culling.h"
 #include "render/gpu/grown_buffer.h"
 #include "render/shaders/deform_gpu.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
+// Techniques: char.skin-vertex-offset
 
 namespace limn {
 namespace {
@@ -47,6 +50,20 @@ std::vector<std::vector<Offset>> offsets_of_vertices(const MeshData& mesh) {
     return offsets;
 }
 
+/// Unit axes of a vertex; the tangent with its sign.
+struct RestFrame {
+    Vec3 normal = {0, 0, 1};
+    Vec4 tangent = {1, 0, 0, 1};
+};
+RestFrame rest_frame(const MeshData& mesh, std::size_t v) {
+    const auto at = [v](const auto& values, const auto& fallback) {
+        return v < values.size() ? values[v] : fallback;
+    };
+    const Vec3 n = normalize_or(at(mesh.normals, Vec3(0, 0, 1)), {0, 0, 1});
+    const Vec4 t = at(mesh.tangents, Vec4(any_perpendicular(n), 1));
+    return {n, Vec4(normalize_or(Vec3(t), any_perpendicular(n)), t.w < 0 ? -1.0f : 1.0f)};
+}
+
 /// The influences of all vertices; `first` receives the start of each vertex's list, plus the end.
 Texels
 influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std::size_t>& first) {
@@ -60,6 +77,28 @@ influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std:
             texels.push_back(
                 {skin.joints[i], bits_of(skin.weights[i]), skin.joints[alone ? i : i + 1],
                  alone ? 0 : bits_of(skin.weights[i + 1])});
+        }
+    }
+    first.push_back(texels.size());
+    return texels;
+}
+
+/// The same, each in the space of its joint: o = M^-1 v, N = R^-1 n (char.skin-vertex-offset).
+Texels
+joint_offset_texels(const MeshData& mesh, const SkinData& skin, std::vector<std::size_t>& first) {
+    Texels texels;
+    const SkinWeights& by = mesh.skin;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        first.push_back(texels.size());
+        const RestFrame frame = rest_frame(mesh, v);
+        for (std::uint32_t i = by.first[v]; i < by.first[v + 1]; ++i) {
+            const Affine& joint_from_mesh = skin.joint_from_mesh[by.joints[i]];
+            const Vec3 p = transform_point(joint_from_mesh, mesh.positions[v]);
+            const Vec3 n = transform_vector(joint_from_mesh, frame.normal);
+            const Vec3 t = transform_vector(joint_from_mesh, Vec3(frame.tangent));
+            texels.push_back({bits_of(p.x), bits_of(p.y), bits_of(p.z), bits_of(by.weights[i])});
+            texels.push_back({bits_of(n.x), bits_of(n.y), bits_of(n.z), by.joints[i]});
+            texels.push_back({bits_of(t.x), bits_of(t.y), bits_of(t.z), 0});
         }
     }
     first.push_back(texels.size());
@@ -108,15 +147,37 @@ RestPool::get(const Assets& assets, MeshId mesh, std::span<const SurfaceAnchor> 
     std::optional<RestMesh>& made = meshes_[mesh.index];
     if (!made || made->version != assets.meshes[mesh.index].version
         || (!anchors.empty() && !made->has_anchors)) {
-        if (made && made->texel_count > 0) {
-            slots_.release(made->first_texel, made->texel_count);
+        if (made) {
+            release(*made);
         }
-        made = upload(assets.meshes[mesh.index], anchors);
+        made = upload(assets.meshes[mesh.index], anchors, nullptr);
     }
     return *made;
 }
 
-RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfaceAnchor> anchors) {
+const RestMesh& RestPool::get_joint_offsets(const Assets& assets, MeshId mesh, SkinId skin) {
+    const auto [found, is_new] = joint_offsets_.try_emplace({mesh.index, skin.index});
+    RestMesh& made = found->second;
+    const MeshData& data = assets.meshes[mesh.index];
+    if (is_new || made.version != data.version) {
+        const SkinData& bind = assets.skins[skin.index];
+        release(made);
+        made = upload(data, {}, &bind);
+        for (SkinBounds::Joint& one : made.bounds.joints) {
+            one.box = transform_bounds(bind.joint_from_mesh[one.joint], one.box);
+        }
+    }
+    return made;
+}
+
+void RestPool::release(const RestMesh& mesh) {
+    if (mesh.texel_count > 0) {
+        slots_.release(mesh.first_texel, mesh.texel_count);
+    }
+}
+
+RestMesh RestPool::upload(
+    const MeshData& mesh, std::span<const SurfaceAnchor> anchors, const SkinData* skin) {
     RestMesh made;
     made.version = mesh.version;
     made.fault = check_deformable(mesh);
@@ -129,7 +190,9 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfaceAnchor> a
 
     std::vector<std::size_t> first_influence;
     std::vector<std::size_t> first_offset;
-    const Texels influences = influence_texels(mesh.skin, mesh.positions.size(), first_influence);
+    const Texels influences =
+        skin != nullptr ? joint_offset_texels(mesh, *skin, first_influence)
+                        : influence_texels(mesh.skin, mesh.positions.size(), first_influence);
     const Texels offsets = offset_texels(mesh, first_offset);
     made.has_anchors = anchors.size() == mesh.positions.size();
     const Texels anchored = made.has_anchors ? anchor_texels(anchors) : Texels{};
@@ -139,20 +202,14 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfaceAnchor> a
 
     Texels texels;
     texels.reserve(offsets_at + offsets.size());
-    const auto at = [](const auto& values, std::size_t i, const auto& fallback) {
-        return i < values.size() ? values[i] : fallback;
-    };
     for (std::size_t v = 0; v <= mesh.positions.size(); ++v) {
-        const Vec3 p = at(mesh.positions, v, Vec3(0));
-        const Vec3 n = normalize_or(at(mesh.normals, v, Vec3(0, 0, 1)), {0, 0, 1});
-        const Vec4 t = at(mesh.tangents, v, Vec4(any_perpendicular(n), 1));
-        const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
+        const Vec3 p = v < mesh.positions.size() ? mesh.positions[v] : Vec3(0);
+        const auto [n, t] = rest_frame(mesh, v);
         const auto influence = static_cast<layout::uint>(influences_at + first_influence[v]);
         const auto offset = static_cast<layout::uint>(offsets_at + first_offset[v]);
         texels.push_back({bits_of(p.x), bits_of(p.y), bits_of(p.z), influence});
         texels.push_back({bits_of(n.x), bits_of(n.y), bits_of(n.z), offset});
-        texels.push_back(
-            {bits_of(t3.x), bits_of(t3.y), bits_of(t3.z), bits_of(t.w < 0 ? -1.0f : 1.0f)});
+        texels.push_back({bits_of(t.x), bits_of(t.y), bits_of(t.z), bits_of(t.w)});
     }
     texels.insert(texels.end(), anchored.begin(), anchored.end());
     texels.insert(texels.end(), influences.begin(), influences.end());
@@ -171,6 +228,7 @@ RestMesh RestPool::upload(const MeshData& mesh, std::span<const SurfaceAnchor> a
 
 void RestPool::clear() {
     meshes_.clear();
+    joint_offsets_.clear();
     slots_.clear();
 }
 

@@ -7,9 +7,11 @@
 #include "render/skinning/posed_bounds.h"
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -33,6 +35,10 @@ class RestPool {
     /// `anchors`: of its vertices on patches, one per vertex, or empty.
     [[nodiscard]] const RestMesh&
     get(const Assets& assets, MeshId mesh, std::span<const SurfaceAnchor> anchors = {});
+    /// The same with each vertex in the spaces of its joints (kDeformOffsets), and the boxes of
+    /// `bounds` likewise, so that the joints' own matrices move both. The skin must have all
+    /// joints of the mesh. Valid until clear().
+    [[nodiscard]] const RestMesh& get_joint_offsets(const Assets& assets, MeshId mesh, SkinId skin);
     void clear();
 
     [[nodiscard]] const gpu::Buffer& texels() const {
@@ -40,9 +46,13 @@ class RestPool {
     }  ///< null until the first mesh
 
   private:
-    RestMesh upload(const MeshData& mesh, std::span<const SurfaceAnchor> anchors);
+    /// `skin`: null, or of joint offsets.
+    RestMesh
+    upload(const MeshData& mesh, std::span<const SurfaceAnchor> anchors, const SkinData* skin);
+    void release(const RestMesh& mesh);
 
-    std::vector<std::optional<RestMesh>> meshes_;  ///< by mesh
+    std::vector<std::optional<RestMesh>> meshes_;                                ///< by mesh
+    std::map<std::pair<std::uint32_t, std::uint32_t>, RestMesh> joint_offsets_;  ///< by mesh, skin
     gpu::Buffer buffer_;
     SlotAllocator slots_;  // texels
 };

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-// Techniques: char.skin-bone-offset
+// Techniques: char.skin-bone-offset, char.skin-vertex-offset
 
 namespace limn {
 namespace {
@@ -29,25 +29,31 @@ bool shows_before(const std::vector<ValueJump<T>>& jumps, std::size_t index, con
 
 }  // namespace
 
-void make_palette(
-    const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
-    std::vector<Affine>& palette) {
+void make_joint_palette(
+    const SkinData* skin, const Pose* pose, const StepTime& time, std::vector<Affine>& palette) {
     palette.clear();
     if (skin == nullptr || pose == nullptr) {
         return;
     }
     const bool moves = time.alpha != 1.0f && pose->previous.size() == pose->joints.size();
     palette.reserve(skin->joints.size());
-    for (std::size_t i = 0; i < skin->joints.size(); ++i) {
-        const std::uint16_t j = skin->joints[i];
-        const Affine joint = shows_before(pose->jumps, j, time) ? find_jump(pose->jumps, j)->before
-                             : moves ? mix_affine(pose->previous[j], pose->joints[j], time.alpha)
-                                     : pose->joints[j];
-        const Affine posed = joint * skin->joint_from_mesh[i];
+    for (const std::uint16_t j : skin->joints) {
         palette.push_back(
-            skinning == Skinning::Linear
-                ? posed
-                : affine_from(translation_of(posed), rotation_of(posed), Vec3(1)));
+            shows_before(pose->jumps, j, time) ? find_jump(pose->jumps, j)->before
+            : moves ? mix_affine(pose->previous[j], pose->joints[j], time.alpha)
+                    : pose->joints[j]);
+    }
+}
+
+void make_palette(
+    const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
+    std::vector<Affine>& palette) {
+    make_joint_palette(skin, pose, time, palette);
+    for (std::size_t i = 0; i < palette.size(); ++i) {
+        const Affine posed = palette[i] * skin->joint_from_mesh[i];
+        palette[i] = skinning == Skinning::Linear
+                         ? posed
+                         : affine_from(translation_of(posed), rotation_of(posed), Vec3(1));
     }
 }
 

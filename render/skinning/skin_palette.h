@@ -17,6 +17,11 @@ void make_palette(
     const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
     std::vector<Affine>& palette);
 
+/// Fills `palette` with the joints of `skin` as they are: character_from_joint, at `time`, without
+/// joint_from_mesh (char.skin-vertex-offset). Otherwise likewise.
+void make_joint_palette(
+    const SkinData* skin, const Pose* pose, const StepTime& time, std::vector<Affine>& palette);
+
 /// Fills `weights` with `count` weights starting at `first`, at `time`; 0 for missing and
 /// non-finite ones.
 void make_morph_weights(

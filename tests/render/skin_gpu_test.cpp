@@ -2,7 +2,9 @@
 #include "tests/render/skin_fixture.h"
 #include "tests/technique.h"
 // clang-format on
+#include "ecs/components/vertex_offset.h"
 #include "render/skinning/deformed_list.h"
+#include "render/skinning/skin_palette.h"
 #include "systems/animation/deformer_kernels.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/skin_kernels.h"
@@ -204,6 +206,92 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: vertex offsets per joint equal the joint 
         }
         CHECK(glm::distance(got[v], sum) <= 1e-5f);
     }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: skinned by vertex offsets, vertices are those of linear skinning"
+                  * technique("char.skin-vertex-offset")) {
+    for (const int joints : {2, 11, 300}) {
+        const Entity entity = snake(Skinning::Linear, joints, 4, 50);
+        const oracle::SkinReadbackVertices standard = read(entity);
+        world.add(entity, VertexOffsetSkinning{});
+        const oracle::SkinReadbackVertices offset = read(entity);
+        REQUIRE(offset.positions.size() == standard.positions.size());
+        const float scale = std::max(1.0f, size_of(standard.positions));
+        bool same_bits = true;
+        for (std::size_t i = 0; i < offset.positions.size(); ++i) {
+            CHECK(glm::distance(offset.positions[i], standard.positions[i]) <= 1e-5f * scale);
+            CHECK(glm::distance(offset.before[i], standard.before[i]) <= 1e-5f * scale);
+            CHECK(std::abs(glm::length(offset.normals[i]) - 1) <= 1e-4f);
+            same_bits = same_bits && offset.positions[i] == standard.positions[i];
+        }
+        CHECK_FALSE(same_bits);  // another program
+        world.remove<VertexOffsetSkinning>(entity);
+        const oracle::SkinReadbackVertices again = read(entity);
+        CHECK(again.positions == standard.positions);
+        world.destroy(entity);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: vertex offsets turn normals and tangents with their joint"
+                  * technique("char.skin-vertex-offset")) {
+    const Bend bend = make_bend({1, 2, 0}, 1.2f, 1.0f);
+    const Entity entity = pose(add(bend.mesh), gray, add_skin(bend.skin), bend.pose);
+    const oracle::SkinReadbackVertices standard = read(entity);
+    world.add(entity, VertexOffsetSkinning{});
+    const oracle::SkinReadbackVertices offset = read(entity);
+    for (std::size_t i = 0; i < offset.normals.size(); ++i) {
+        CHECK(glm::distance(offset.normals[i], standard.normals[i]) <= 1e-4f);
+        CHECK(glm::distance(offset.tangents[i], standard.tangents[i]) <= 1e-4f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: vertex offsets take 12 numbers an influence, and the joints as they are"
+                  * technique("char.skin-vertex-offset")) {
+    MeshData tube = make_tube(4, 8, 1);
+    const auto vertices = static_cast<std::uint32_t>(tube.positions.size());
+    tube.skin.first.push_back(0);
+    for (std::uint32_t i = 1; i <= vertices; ++i) {
+        tube.skin.joints.insert(tube.skin.joints.end(), {0, 1, 2, 3});
+        tube.skin.weights.insert(tube.skin.weights.end(), {0.4f, 0.3f, 0.2f, 0.1f});
+        tube.skin.first.push_back(4 * i);
+    }
+    const MeshId mesh = add(std::move(tube));
+    const SkinId skin = add_skin(make_chain(4, 0.25f));
+    const auto& assets = world.resource<Assets>();
+    RestPool pool;
+    // Of four influences: position, normal, weight and joint of each are 32 numbers beside 14 of
+    // joint offsets, which have position and normal once.
+    const std::uint32_t at_rest = 3 * (vertices + 1);
+    CHECK(pool.get(assets, mesh).texel_count == at_rest + 2 * vertices);
+    CHECK(pool.get_joint_offsets(assets, mesh, skin).texel_count == at_rest + 12 * vertices);
+
+    Pose pose;
+    pose.joints = {at({1, 2, 3}), at({4, 5, 6}), at({7, 8, 9}), at({1, 1, 1})};
+    std::vector<Affine> palette;
+    make_joint_palette(&assets.skins[skin.index], &pose, {}, palette);
+    REQUIRE(palette.size() == 4);
+    CHECK(to_mat4(palette[2]) == to_mat4(pose.joints[2]));
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: vertex offsets leave dual quaternions and morphs as they are") {
+    const Entity dual = snake(Skinning::DualQuaternion, 5, 4, 51);
+    const std::vector<Vec3> before = read(dual).positions;
+    world.add(dual, VertexOffsetSkinning{});
+    CHECK(read(dual).positions == before);
+    world.destroy(dual);
+
+    Random random(52, 0, 0, 0);
+    Bend bend = make_bend({1, 0, 0}, 0.8f, 1.0f);
+    add_morphs(bend.mesh, 1, 2, 0.1f, random);
+    const Entity morphed = pose(add(bend.mesh), gray, add_skin(bend.skin), bend.pose);
+    world.add(morphed, MorphWeights{.weights = {1}, .previous = {1}});
+    const std::vector<Vec3> bent = read(morphed).positions;
+    world.add(morphed, VertexOffsetSkinning{});
+    CHECK(read(morphed).positions == bent);
 }
 
 TEST_CASE_FIXTURE(

@@ -102,6 +102,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.skin-limits", "largest number of influences and joints"},
     {"char.skin-rigid", "rigid skinning, one joint per vertex"},
     {"char.skin-shade", "skin shading with a rim light"},
+    {"char.skin-vertex-offset", "vertex-offset skinning, vertices in the spaces of their joints"},
     {"char.walk-control", "walk style, gait parameters, limp"},
     {"char.walk-cycle", "procedural walk, walk cycle by inverse kinematics, foot planting"},
     {"char.walk-retarget", "foot contacts and flight curves of a recorded walk"},
