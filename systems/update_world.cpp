@@ -17,6 +17,7 @@
 #include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
+#include "systems/animation/walk/crowd_script_system.h"
 #include "systems/animation/walk/crowd_walk_system.h"
 #include "systems/animation/walk/walk_system.h"
 #include "systems/attach_system.h"
@@ -25,6 +26,7 @@
 #include "systems/characters/loose_body_system.h"
 #include "systems/characters/motor_system.h"
 #include "systems/crowd/crowd_system.h"
+#include "systems/crowd/crowd_visit_system.h"
 #include "systems/crowd/flock_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/skin_pull_system.h"
@@ -114,6 +116,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<prepare_motion_plans>(Create, Both);
     systems.add<update_motion_graphs>(Move);
     systems.add<advance_clips>(Animate);
+    systems.add<fade_crowd_clips>(Animate);  // after clips: keeps their times
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
     systems.add<add_foot_contacts>(Create, Both);
@@ -145,7 +148,13 @@ void add_character_systems(SystemList& systems) {
 
 void add_crowd_systems(SystemList& systems) {
     systems.add<add_crowd_states>(Create, Both);
+    systems.add<add_crowd_visits>(Create, Both);
+    systems.add<add_crowd_scripts>(Create, Both);
+    systems.add<update_crowd_visits>(Move);
+    systems.add<place_stand_ins>(Move);
     systems.add<update_crowd>(Move);  // before clips, whose speeds it sets
+    systems.add<update_crowd_scripts>(Move, Both);
+    systems.add<notice_characters>(Move);
     systems.add<update_flocks>(Move);
 }
 

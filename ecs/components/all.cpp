@@ -11,6 +11,7 @@
 #include "ecs/components/caustics.h"
 #include "ecs/components/crowd.h"
 #include "ecs/components/crowd_pose.h"
+#include "ecs/components/crowd_script.h"
 #include "ecs/components/curvature_view.h"
 #include "ecs/components/dazzle.h"
 #include "ecs/components/deformers.h"
@@ -166,6 +167,12 @@ void register_all_components() {
     register_component<WalkRoute>();
     register_component<WalkRouteState>();
     register_component<CrowdWalk>();
+    register_component<CrowdScript>();
+    register_component<CrowdScriptState>();
+    register_component<CrowdPlace>();
+    register_component<CrowdVisitor>();
+    register_component<CrowdVisit>();
+    register_component<CrowdStandIn>();
     register_component<PoseCut>();
     register_component<MorphWeights>();
     register_component<MorphPlayer>();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/skeleton.h"
 #include "ecs/reflect.h"
 
 #include <cstdint>
@@ -26,13 +27,24 @@ LIMN_FIELDS(CrowdPose) {
         half_rate_within, "up to which in every second step; beyond, in every fourth", "m", 0, 1e6);
 }
 
-/// How often a crowd's character is posed: chosen by choose_pose_rates().
+/// How often a crowd's character is posed, chosen by choose_pose_rates(), and from what it fades
+/// after its clip was changed.
 struct CrowdPoseState {
-    std::uint8_t interval = 1;  ///< steps: 1, 2 or 4
+    std::uint32_t interval = 1;  ///< steps: 1, 2 or 4
+    ClipId clip{};
+    float time = 0.0f;
+    ClipId from{};
+    float from_time = 0.0f;
+    float fade = 0.0f;
 };
 
 LIMN_FIELDS(CrowdPoseState) {
     LIMN_FIELD(interval, "steps from one pose to the next", "", 1, 4);
+    LIMN_FIELD(clip, "what it played in the last step");
+    LIMN_FIELD(time, "in that clip", "s");
+    LIMN_FIELD(from, "what it played before");
+    LIMN_FIELD(from_time, "in that clip", "s");
+    LIMN_FIELD(fade, "how much of that is left", "", 0, 1);
 }
 
 /// Not copied with a prefab: an instance has no history.

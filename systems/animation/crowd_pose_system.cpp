@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace limn {
@@ -16,7 +17,7 @@ Vec3 origin_of(const WorldTransform& transform) {
     return {world.row[0].w, world.row[1].w, world.row[2].w};
 }
 
-std::uint8_t interval_at(const CrowdPose& crowd, float distance) {
+std::uint32_t interval_at(const CrowdPose& crowd, float distance) {
     return distance <= crowd.full_rate_within ? 1 : distance <= crowd.half_rate_within ? 2 : 4;
 }
 
@@ -59,8 +60,8 @@ void prepare_crowd_clips(
     });
 }
 
-std::uint8_t choose_pose_interval(const CrowdPose& crowd, float distance, std::uint8_t current) {
-    const std::uint8_t wanted = interval_at(crowd, distance);
+std::uint32_t choose_pose_interval(const CrowdPose& crowd, float distance, std::uint32_t current) {
+    const std::uint32_t wanted = interval_at(crowd, distance);
     if (wanted > current) {
         return std::max(interval_at(crowd, distance / kHysteresis), current);
     }
@@ -68,6 +69,21 @@ std::uint8_t choose_pose_interval(const CrowdPose& crowd, float distance, std::u
         return std::min(interval_at(crowd, distance * kHysteresis), current);
     }
     return wanted;
+}
+
+void fade_crowd_clips(Query<const ClipPlayer, CrowdPoseState> crowds, Res<const FrameTime> time) {
+    const float part = time->step / kCrowdFade;
+    crowds.each([&](const ClipPlayer& player, CrowdPoseState& state) {
+        if (player.clip == state.clip) {
+            state.fade = std::max(state.fade - part, 0.0f);
+        } else if (state.clip != ClipId{}) {
+            state.from = state.clip;
+            state.from_time = state.time;
+            state.fade = 1;
+        }
+        state.clip = player.clip;
+        state.time = player.time;
+    });
 }
 
 void choose_pose_rates(

@@ -26,10 +26,17 @@ void prepare_crowd_clips(
     Query<const CrowdPose, const Skeleton, const ClipPlayer> crowds, Res<const Assets> assets,
     Res<CrowdLibrary> library);
 
+/// Seconds over which a crowd's character fades from one clip to another.
+inline constexpr float kCrowdFade = 0.3f;
+
+/// Starts a fade where the clip of a player was changed, and advances those that go on: the last
+/// pose of the old clip is kept until then. After advance_clips.
+void fade_crowd_clips(Query<const ClipPlayer, CrowdPoseState> crowds, Res<const FrameTime> time);
+
 /// Steps from one pose to the next at a distance: 1, 2 or 4. It changes 10 % beyond a border, not
 /// at it, so that characters near one do not alternate.
-[[nodiscard]] std::uint8_t
-choose_pose_interval(const CrowdPose& crowd, float distance, std::uint8_t current);
+[[nodiscard]] std::uint32_t
+choose_pose_interval(const CrowdPose& crowd, float distance, std::uint32_t current);
 
 /// Chooses the intervals by the distance from the active camera.
 void choose_pose_rates(

@@ -1,6 +1,7 @@
 #include "systems/animation/pose_system.h"
 
 #include "ecs/base/jobs.h"
+#include "ecs/base/rotation.h"
 #include "ecs/components/placement.h"
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/clip_sampling.h"
@@ -86,8 +87,15 @@ struct Playback {
     const ClipPlayer* player = nullptr;
     const MorphPlayer* morph_player = nullptr;
     bool is_cut = false;
-    float step = 0;  ///< [s]
+    float step = 0;                         ///< [s]
+    const CrowdPoseState* crowd = nullptr;  ///< from what it fades
 };
+
+/// Share of the clip that a crowd's character fades from: eases in and out.
+float fade_share(const CrowdPoseState* crowd) {
+    const float fade = crowd != nullptr ? std::clamp(crowd->fade, 0.0f, 1.0f) : 0.0f;
+    return fade * fade * (3 - 2 * fade);
+}
 
 /// Joints and weights that jump in this step get no velocity. `pose`: null for an entity with
 /// weights only.
@@ -230,6 +238,23 @@ class Modifiers {
     bool any_graph_;
 };
 
+/// Blends in what a crowd's character played before.
+void fade_from(
+    const Assets& assets, const SkeletonData& skeleton, const CrowdPoseState* crowd,
+    LocalPose& pose) {
+    const float share = fade_share(crowd);
+    const ClipData* const clip = share > 0 ? find_asset(assets.clips, crowd->from.index) : nullptr;
+    if (clip == nullptr) {
+        return;
+    }
+    thread_local LocalPose from;  // reused between characters
+    sample_pose(skeleton, clip, crowd->from_time, from, {});
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+        pose.rotations[j] = nlerp(pose.rotations[j], from.rotations[j], share);
+        pose.translations[j] = glm::mix(pose.translations[j], from.translations[j], share);
+    }
+}
+
 /// Samples the graph or the clip of one character that has a Pose, and applies its modifiers.
 void step_character(
     const Assets& assets, Entity entity, SkeletonId id, Playback playback,
@@ -246,6 +271,7 @@ void step_character(
         const ClipData* const clip =
             player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
         sample_pose(skeleton, clip, player != nullptr ? player->time : 0.0f, scratch, weights);
+        fade_from(assets, skeleton, playback.crowd, scratch);
     }
     modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
     compute_joint_matrices(skeleton, scratch, pose.joints);
@@ -279,7 +305,8 @@ struct CharacterSpans {
     [[nodiscard]] Playback playback(std::size_t i, const Cuts& cuts, float step) const {
         return {
             players.empty() ? nullptr : &players[i],
-            morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]), step};
+            morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]), step,
+            crowd_states.empty() ? nullptr : &crowd_states[i]};
     }
 };
 
@@ -362,9 +389,17 @@ class CrowdStepper {
         thread_local std::vector<CrowdCharacter> characters;
         characters.clear();
         for (const Due& each : due) {
+            const CrowdPoseState* const state = each.playback.crowd;
+            const float share = fade_share(state);
+            const CrowdLibrary::Entry* const from =
+                share > 0 ? library_->find(all_.skeletons[each.index].skeleton, state->from)
+                          : nullptr;
             characters.push_back(
                 {.clip = each.clip,
                  .time = each.playback.player->time,
+                 .next = from != nullptr ? from->clip.get() : nullptr,
+                 .next_time = from != nullptr ? state->from_time : 0.0f,
+                 .weight = share,
                  .joints = all_.poses[each.index].joints.data()});
         }
         pose_crowd(*library_->rigs[all_.skeletons[due[0].index].skeleton.index], characters);
@@ -391,7 +426,8 @@ class CrowdStepper {
 /// The same for an entity with morph targets only.
 void step_weights(const Assets& assets, const Playback& playback, MorphWeights& morph) {
     static const SkeletonData kNoJoints;
-    const auto& [player, morph_player, is_cut, step] = playback;
+    const ClipPlayer* const player = playback.player;
+    const MorphPlayer* const morph_player = playback.morph_player;
     const bool is_new = morph.previous.size() != morph.weights.size();
     morph.previous = morph.weights;
     morph.jumps.clear();

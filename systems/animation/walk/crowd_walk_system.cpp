@@ -2,7 +2,6 @@
 
 #include "systems/animation/walk/walk_clip.h"
 
-#include <algorithm>
 #include <cmath>
 
 // Techniques: char.crowd-script
@@ -31,15 +30,12 @@ void add_crowd_walks(
         if (skeleton.skeleton.index >= assets->skeletons.size()) {
             return;
         }
-        auto found = std::find_if(
-            walks->entries.begin(), walks->entries.end(), [&](const CrowdWalkClips::Entry& entry) {
-                return entry.skeleton == skeleton.skeleton && entry.style == member.style;
-            });
-        if (found == walks->entries.end()) {
+        const CrowdWalkClips::Entry* found = walks->find(skeleton.skeleton, member.style);
+        if (found == nullptr) {
             const Walk* const walk = styles.find<const Walk>(member.style);
             walks->entries.push_back(make_crowd_walk(
                 skeleton.skeleton, member.style, walk != nullptr ? *walk : Walk{}, *assets));
-            found = walks->entries.end() - 1;
+            found = &walks->entries.back();
         }
         const float phase = finite_or(member.phase, 0.0f);
         const float speed = finite_or(member.speed, 0.0f);

@@ -7,8 +7,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "ecs/system.h"
-
-#include <vector>
+#include "systems/animation/walk/crowd_walk_clips.h"
 
 namespace limn {
 
@@ -16,17 +15,6 @@ namespace limn {
 // S m (1 + 7 n) numbers, however many people there are. Equal phases look like marching, so members
 // should have different ones. With a CrowdPose they are posed together, and less often far away.
 // Techniques: char.crowd-script
-
-/// Resource: clips of walks, by style; never saved.
-struct CrowdWalkClips {
-    struct Entry {
-        SkeletonId skeleton{};
-        Entity style{};
-        ClipId clip{};
-        float speed = 1.0f;  ///< at which its feet do not slide [m/s]
-    };
-    std::vector<Entry> entries{};
-};
 
 /// Makes the clips of the styles that members need, and gives each member without a ClipPlayer one
 /// that plays its style. Before advance_clips, with a sync point in between. A member without a
