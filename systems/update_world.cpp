@@ -13,6 +13,7 @@
 #include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
+#include "systems/animation/pose_keys_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
@@ -99,6 +100,8 @@ void add_object_systems(SystemList& systems) {
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
     systems.add<add_crowd_poses>(Create, Both);
+    systems.add<add_pose_keys_states>(Create, Both);
+    systems.add<release_pose_keys>(Create, Both);
     systems.add<add_skin_pulls>(Create, Both);
     systems.add<add_deformer_states>(Create, Both);
     systems.add<release_surface_bindings>(Create, Both);
@@ -117,6 +120,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_motion_graphs>(Move);
     systems.add<advance_clips>(Animate);
     systems.add<fade_crowd_clips>(Animate);  // after clips: keeps their times
+    systems.add<prepare_pose_keys>(Animate, Both);
+    systems.add<advance_pose_keys>(Animate);
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
     systems.add<add_foot_contacts>(Create, Both);

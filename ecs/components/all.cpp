@@ -50,6 +50,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/point_mass.h"
+#include "ecs/components/pose_keys.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
 #include "ecs/components/ragdoll.h"
@@ -143,6 +144,7 @@ void register_all_components() {
     register_component<Skeleton>();
     register_component<ClipPlayer>();
     register_component<Pose>();
+    register_component<PoseKeys>();
     register_component<CrowdPose>();
     register_component<CrowdPoseState>();
     register_component<MoveIntent>();

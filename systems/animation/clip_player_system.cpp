@@ -3,8 +3,8 @@
 namespace limn {
 
 void advance_clips(
-    Query<ClipPlayer> players, Query<MorphPlayer> morph_players, Res<const Assets> assets,
-    Res<const FrameTime> time) {
+    Query<ClipPlayer, Without<PoseKeysState>> players, Query<MorphPlayer> morph_players,
+    Res<const Assets> assets, Res<const FrameTime> time) {
     const auto advance = [&](auto& player) {
         if (player.clip.index < assets->clips.size()) {
             player.time =

@@ -3,6 +3,7 @@
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/ik.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/pose_keys.h"
 #include "ecs/components/ragdoll.h"
 #include "ecs/components/walk.h"
 #include "ecs/param_group.h"
@@ -26,6 +27,7 @@ struct PoseModifiers {
     OptionalRes<const MotionGraphs> graph_data;
     OptionalRes<const MotionPlans> plans;
     Query<const RagdollState> ragdolls;
+    Query<const PoseKeysState> keys;
 };
 
 template <>
@@ -36,6 +38,6 @@ struct SystemParam<PoseModifiers>
           Query<const LookAt, const Gaze>, Query<const ReachGoal, const ReachState>,
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
-          Query<const RagdollState>> {};
+          Query<const RagdollState>, Query<const PoseKeysState>> {};
 
 }  // namespace limn

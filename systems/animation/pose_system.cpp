@@ -89,6 +89,7 @@ struct Playback {
     bool is_cut = false;
     float step = 0;                         ///< [s]
     const CrowdPoseState* crowd = nullptr;  ///< from what it fades
+    const ClipData* keys = nullptr;         ///< plays in place of the player's clip
 };
 
 /// Share of the clip that a crowd's character fades from: eases in and out.
@@ -105,7 +106,9 @@ void apply_jumps(
     std::vector<float> joints;  // filled for the first clip that may jump, which is rare
     std::vector<float> weights;
     const auto find_jumps = [&](const auto& played, bool moves_joints) {
-        const ClipData* const clip = find_asset(assets.clips, played.clip.index);
+        const ClipData* const clip = moves_joints && playback.keys != nullptr
+                                         ? playback.keys
+                                         : find_asset(assets.clips, played.clip.index);
         const ClipStep step = clip_step(played, playback.step);
         if (clip == nullptr || !may_jump(*clip, step)) {
             return;
@@ -181,14 +184,22 @@ class Modifiers {
           any_(
               !queries.walks.empty() || !queries.plants.empty() || !queries.rigs.empty()
               || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()),
-          any_graph_(!queries.graphs.empty()) {}
+          any_graph_(!queries.graphs.empty()), any_keys_(!queries.keys.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return (any_
                 && (queries_.walks.contains(entity) || queries_.plants.contains(entity)
                     || queries_.rigs.contains(entity) || queries_.looks.contains(entity)
                     || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)))
-               || (any_graph_ && queries_.graphs.contains(entity));
+               || (any_graph_ && queries_.graphs.contains(entity))
+               || (any_keys_ && queries_.keys.contains(entity));
+    }
+
+    /// The clip of the character's PoseKeys; null: it has none.
+    [[nodiscard]] const ClipData* find_keys(Entity entity, SkeletonId skeleton) const {
+        const auto* const state =
+            any_keys_ ? queries_.keys.find<const PoseKeysState>(entity) : nullptr;
+        return state != nullptr && state->skeleton == skeleton ? &state->clip : nullptr;
     }
 
     /// The pose of the character's motion graph; false: it has none.
@@ -236,6 +247,7 @@ class Modifiers {
     const PoseModifiers& queries_;
     bool any_;
     bool any_graph_;
+    bool any_keys_;
 };
 
 /// Blends in what a crowd's character played before.
@@ -268,10 +280,15 @@ void step_character(
         playback.player = nullptr;
     } else {
         const ClipPlayer* const player = playback.player;
-        const ClipData* const clip =
-            player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
+        playback.keys = modifiers.find_keys(entity, id);
+        const ClipData* const clip = playback.keys != nullptr ? playback.keys
+                                     : player != nullptr
+                                         ? find_asset(assets.clips, player->clip.index)
+                                         : nullptr;
         sample_pose(skeleton, clip, player != nullptr ? player->time : 0.0f, scratch, weights);
-        fade_from(assets, skeleton, playback.crowd, scratch);
+        if (playback.keys == nullptr) {
+            fade_from(assets, skeleton, playback.crowd, scratch);
+        }
     }
     modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
     compute_joint_matrices(skeleton, scratch, pose.joints);
@@ -305,8 +322,11 @@ struct CharacterSpans {
     [[nodiscard]] Playback playback(std::size_t i, const Cuts& cuts, float step) const {
         return {
             players.empty() ? nullptr : &players[i],
-            morph_players.empty() ? nullptr : &morph_players[i], cuts.has(entities[i]), step,
-            crowd_states.empty() ? nullptr : &crowd_states[i]};
+            morph_players.empty() ? nullptr : &morph_players[i],
+            cuts.has(entities[i]),
+            step,
+            crowd_states.empty() ? nullptr : &crowd_states[i],
+            nullptr};
     }
 };
 
