@@ -18,6 +18,7 @@
 #include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
+#include "systems/animation/twist_joint_system.h"
 #include "systems/animation/walk/crowd_script_system.h"
 #include "systems/animation/walk/crowd_walk_system.h"
 #include "systems/animation/walk/walk_system.h"
@@ -124,6 +125,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<advance_pose_keys>(Animate);
     systems.add<prepare_crowd_clips>(Animate, Both);
     systems.add<add_ik_states>(Create, Both);
+    systems.add<add_twist_links>(Create, Both);
     systems.add<add_foot_contacts>(Create, Both);
     systems.add<add_walk_states>(Create, Both);
     systems.add<add_crowd_walks>(Create, Both);
@@ -131,6 +133,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_walks>(Animate, Both);  // after all that moves characters
     systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
+    systems.add<update_twist_links>(Animate, Both);
     systems.add<add_ragdoll_states>(Create, Both);
     systems.add<place_ragdolls>(Animate, Both);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time

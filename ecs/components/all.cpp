@@ -74,6 +74,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/twist_joints.h"
 #include "ecs/components/vertex_offset.h"
 #include "ecs/components/vignette.h"
 #include "ecs/components/walk.h"
@@ -198,6 +199,7 @@ void register_all_components() {
     register_component<JointAttachment>();
     register_component<IkRig>();
     register_component<LookAt>();
+    register_component<TwistJoints>();
     register_component<Walkable>();
     register_component<FootPlant>();
     register_component<FootContacts>();

@@ -5,6 +5,7 @@
 #include "ecs/components/motion_graph.h"
 #include "ecs/components/pose_keys.h"
 #include "ecs/components/ragdoll.h"
+#include "ecs/components/twist_joints.h"
 #include "ecs/components/walk.h"
 #include "ecs/param_group.h"
 #include "ecs/query.h"
@@ -28,6 +29,7 @@ struct PoseModifiers {
     OptionalRes<const MotionPlans> plans;
     Query<const RagdollState> ragdolls;
     Query<const PoseKeysState> keys;
+    Query<const TwistJoints, const TwistLinks> twists;
 };
 
 template <>
@@ -38,6 +40,7 @@ struct SystemParam<PoseModifiers>
           Query<const LookAt, const Gaze>, Query<const ReachGoal, const ReachState>,
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
-          Query<const RagdollState>, Query<const PoseKeysState>> {};
+          Query<const RagdollState>, Query<const PoseKeysState>,
+          Query<const TwistJoints, const TwistLinks>> {};
 
 }  // namespace limn

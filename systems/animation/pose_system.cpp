@@ -10,6 +10,7 @@
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
+#include "systems/animation/twist_pose.h"
 #include "systems/animation/walk/walk_pose.h"
 
 #include <algorithm>
@@ -183,14 +184,16 @@ class Modifiers {
         : queries_(queries),
           any_(
               !queries.walks.empty() || !queries.plants.empty() || !queries.rigs.empty()
-              || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()),
+              || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()
+              || !queries.twists.empty()),
           any_graph_(!queries.graphs.empty()), any_keys_(!queries.keys.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return (any_
                 && (queries_.walks.contains(entity) || queries_.plants.contains(entity)
                     || queries_.rigs.contains(entity) || queries_.looks.contains(entity)
-                    || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)))
+                    || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)
+                    || queries_.twists.contains(entity)))
                || (any_graph_ && queries_.graphs.contains(entity))
                || (any_keys_ && queries_.keys.contains(entity));
     }
@@ -240,6 +243,10 @@ class Modifiers {
         }
         if (const RagdollState* const body = queries_.ragdolls.find<const RagdollState>(entity)) {
             apply_ragdoll(skeleton, *body, pose);
+        }
+        if (const TwistJoints* const twist = queries_.twists.find<const TwistJoints>(entity)) {
+            const TwistLinks* const found = queries_.twists.find<const TwistLinks>(entity);
+            apply_twist_joints(skeleton, found->links, twist->weight, pose);
         }
     }
 

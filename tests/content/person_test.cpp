@@ -1,6 +1,7 @@
 #include "content/make/person/person.h"
 #include "ecs/components/humanoid.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/content/posed_mesh.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
@@ -81,54 +82,6 @@ void check_vertices(const MeshData& mesh) {
     }
     CHECK(worst < 1e-5f);
     CHECK(finite);
-}
-
-Vec3 rest_point(const SkeletonData& skeleton, std::int32_t joint) {
-    Vec3 p(0);
-    for (; joint >= 0; joint = skeleton.parents[static_cast<std::size_t>(joint)]) {
-        p += skeleton.rest.translations[static_cast<std::size_t>(joint)];
-    }
-    return p;
-}
-
-/// `mesh` in the first pose of a clip, by linear blend skinning; rest rotations are the identity.
-MeshData posed(const MeshData& mesh, const SkeletonData& skeleton, const ClipData& clip) {
-    std::vector<Vec3> translations = skeleton.rest.translations;
-    std::vector<Quat> rotations = skeleton.rest.rotations;
-    for (const ClipSheet& sheet : clip.sheets) {
-        for (std::size_t i = 0; i < sheet.rotating.size(); ++i) {
-            rotations[sheet.rotating[i]] = sheet.rotations[i];
-        }
-        for (std::size_t i = 0; i < sheet.translating.size(); ++i) {
-            translations[sheet.translating[i]] = sheet.translations[i];
-        }
-    }
-    for (std::size_t j = 1; j < rotations.size(); ++j) {
-        const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
-        translations[j] = translations[parent] + rotations[parent] * translations[j];
-        rotations[j] = rotations[parent] * rotations[j];
-    }
-    MeshData moved = mesh;
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        Vec3 sum(0);
-        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
-            const std::uint16_t j = mesh.skin.joints[i];
-            const Vec3 from = mesh.positions[v] - rest_point(skeleton, j);
-            sum += mesh.skin.weights[i] * (translations[j] + rotations[j] * from);
-        }
-        moved.positions[v] = sum;
-    }
-    return moved;
-}
-
-std::size_t joint_called(const SkeletonData& skeleton, const std::string& name) {
-    for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
-        if (skeleton.joints[i] == name) {
-            return i;
-        }
-    }
-    FAIL("no joint ", name);
-    return 0;
 }
 
 }  // namespace
@@ -267,7 +220,8 @@ TEST_CASE(
                 CAPTURE(shape.seed);
                 CAPTURE(static_cast<int>(part));
                 CAPTURE(clip.name);
-                const MeshData moved = posed(mesh, rig.skeleton, clip);
+                const MeshData moved =
+                    posed_mesh(mesh, rig.skeleton, first_pose(rig.skeleton, clip));
                 // A skirt is drawn over the knees.
                 const bool skirt =
                     part == PersonPart::Trousers && shape.legs == PersonLegwear::Skirt;
@@ -288,7 +242,7 @@ TEST_CASE("person: soles lie on the floor in every clip, whatever the height and
         for (const ClipData& clip : rig.clips) {
             CAPTURE(seed);
             CAPTURE(clip.name);
-            const MeshData moved = posed(shoes, rig.skeleton, clip);
+            const MeshData moved = posed_mesh(shoes, rig.skeleton, first_pose(rig.skeleton, clip));
             std::array<float, 2> soles = {1, 1};
             for (const Vec3& p : moved.positions) {
                 float& sole = soles[p.x > 0 ? 0 : 1];

@@ -100,7 +100,9 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.skeleton-hierarchy", "skeleton tree, bone hierarchy"},
     {"char.skin-bone-offset", "linear blend skinning, inverse bind matrices"},
     {"char.skin-cpu", "CPU skinning, SIMD"},
-    {"char.skin-defects", "dual quaternion skinning, candy wrapper, skinning artifacts"},
+    {"char.skin-defects", "dual quaternion skinning, candy wrapper, skinning artifacts, twist "
+                          "joints, corrective shapes, "
+                          "pose space deformation"},
     {"char.skin-gpu", "GPU skinning, compute skinning"},
     {"char.skin-limits", "largest number of influences and joints"},
     {"char.skin-rigid", "rigid skinning, one joint per vertex"},

@@ -118,6 +118,16 @@ KeyPose fists(const PersonFrame& frame) {
     return pose;
 }
 
+/// Hands before the body, turned about the forearms by a quarter.
+KeyPose palms_up(const PersonFrame& frame) {
+    KeyPose pose;
+    lower_arms(pose, frame, 8);
+    pose.turn(SideJoint::Forearm, -frame.forearm.back, 72);
+    pose.turn(SideJoint::Hand, frame.forearm.along, -90);
+    curl_fingers(pose, frame, 10);
+    return pose;
+}
+
 /// A clip of poses that turn the same joints, at equal steps.
 ClipData make_clip(
     const char* name, float duration, const std::vector<KeyPose>& poses, const PersonFrame& frame) {
@@ -155,8 +165,12 @@ std::vector<ClipData> make_person_clips(const PersonFrame& frame) {
         return make_clip(name, 1, {pose, pose}, frame);
     };
     return {
-        make_clip("idle", kIdleTime, idle, frame), held("arms_up", arms_up(frame)),
-        held("sit", sitting(frame)), held("squat", squatting(frame)), held("fist", fists(frame))};
+        make_clip("idle", kIdleTime, idle, frame),
+        held("arms_up", arms_up(frame)),
+        held("sit", sitting(frame)),
+        held("squat", squatting(frame)),
+        held("fist", fists(frame)),
+        held("palms_up", palms_up(frame))};
 }
 
 }  // namespace limn

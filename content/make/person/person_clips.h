@@ -8,7 +8,7 @@
 namespace limn {
 
 /// "idle": the arms hang, chest and head move as the person breathes and shifts weight. And poses
-/// to look at a body in: "arms_up", "sit", "squat" and "fist", each held for a second.
+/// to look at a body in: "arms_up", "sit", "squat", "fist" and "palms_up", each held for a second.
 [[nodiscard]] std::vector<ClipData> make_person_clips(const PersonFrame& frame);
 
 }  // namespace limn
