@@ -1,7 +1,14 @@
 #include "systems/animation/driven_shapes_system.h"
 
+#include "ecs/base/rotation.h"
+#include "ecs/components/bend_shapes.h"
+#include "systems/animation/twist_pose.h"
+
 #include <algorithm>
+#include <string>
 #include <vector>
+
+// Techniques: char.skin-defects
 
 namespace limn {
 namespace {
@@ -49,7 +56,49 @@ void drive_jumps(std::span<const MorphTarget> targets, std::size_t first, MorphW
     std::ranges::sort(morph.jumps, {}, &ValueJump<float>::index);
 }
 
+bool is_bend(const MorphTarget& target) {
+    return target.name.starts_with(kBendShapePrefix);
+}
+
+Quat rotation_of(const Affine& place) {
+    const auto& row = place.row;
+    const Mat3 axes(
+        Vec3(row[0].x, row[1].x, row[2].x), Vec3(row[0].y, row[1].y, row[2].y),
+        Vec3(row[0].z, row[1].z, row[2].z));
+    return extract_rotation(axes).value_or(Quat(1, 0, 0, 0));
+}
+
+/// `weights`: of a character with these joint matrices; those of `targets` begin at `first`.
+void drive_bends(
+    std::span<const MorphTarget> targets, std::size_t first, const SkeletonData& skeleton,
+    std::span<const Affine> joints, std::vector<float>& weights) {
+    for (std::size_t t = 0; t < targets.size() && first + t < weights.size(); ++t) {
+        if (!is_bend(targets[t])) {
+            continue;
+        }
+        const std::string joint = targets[t].name.substr(kBendShapePrefix.size());
+        const auto found = std::ranges::find(skeleton.joints, joint);
+        if (found != skeleton.joints.end()) {
+            const auto index = static_cast<std::size_t>(found - skeleton.joints.begin());
+            weights[first + t] = bend_shape_weight(joint_bend(skeleton, joints, index));
+        }
+    }
+}
+
 }  // namespace
+
+float joint_bend(const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint) {
+    const auto freedom = std::ranges::find(skeleton.freedoms, joint, &JointFreedom::joint);
+    if (freedom == skeleton.freedoms.end() || joint >= joints.size()
+        || skeleton.parents[joint] < 0) {
+        return 0;
+    }
+    const Quat parent = rotation_of(joints[static_cast<std::size_t>(skeleton.parents[joint])]);
+    const Quat local = glm::conjugate(parent) * rotation_of(joints[joint]);
+    const float angle =
+        twist_angle(glm::conjugate(skeleton.rest.rotations[joint]) * local, freedom->axis);
+    return freedom->max >= -freedom->min ? angle : -angle;
+}
 
 float driven_weight(std::span<const ShapeDriver> drivers, std::span<const float> weights) {
     float product = 1;
@@ -62,16 +111,28 @@ float driven_weight(std::span<const ShapeDriver> drivers, std::span<const float>
 
 void update_driven_shapes(
     Query<const Deformed, const MeshInstance> meshes, Query<MorphWeights> faces,
-    Res<const Assets> assets) {
+    Query<const Skeleton, const Pose> bodies, Res<const Assets> assets) {
     meshes.each([&](const Deformed& deformed, const MeshInstance& instance) {
         if (instance.mesh.index >= assets->meshes.size()) {
             return;
         }
         const std::span<const MorphTarget> targets = assets->meshes[instance.mesh.index].morphs;
-        if (std::ranges::none_of(targets, has_drivers)) {
+        const bool drives = std::ranges::any_of(targets, has_drivers);
+        const bool bends = std::ranges::any_of(targets, is_bend);
+        MorphWeights* const morph =
+            drives || bends ? faces.find<MorphWeights>(deformed.character) : nullptr;
+        if (morph == nullptr) {
             return;
         }
-        if (MorphWeights* const morph = faces.find<MorphWeights>(deformed.character)) {
+        const Skeleton* const body =
+            bends ? bodies.find<const Skeleton>(deformed.character) : nullptr;
+        if (body != nullptr && body->skeleton.index < assets->skeletons.size()) {
+            const SkeletonData& skeleton = assets->skeletons[body->skeleton.index];
+            const Pose& pose = *bodies.find<const Pose>(deformed.character);
+            drive_bends(targets, deformed.first_morph, skeleton, pose.joints, morph->weights);
+            drive_bends(targets, deformed.first_morph, skeleton, pose.previous, morph->previous);
+        }
+        if (drives) {
             drive(targets, deformed.first_morph, morph->weights);
             drive(targets, deformed.first_morph, morph->previous);
             drive_jumps(targets, deformed.first_morph, *morph);

@@ -11,7 +11,8 @@ namespace limn {
 
 // Weights of morph targets that follow from those of others. Targets move vertices along straight
 // lines; an in-between bends the path of one target (a lid that rotates about the eye), a
-// corrective corrects a combination (two units that close the same eye).
+// corrective corrects a combination (two units that close the same eye) or the bend of a joint
+// (bend_shapes.h).
 
 /// Weight of a target with `drivers` while the targets of its list have `weights`: the product of
 /// one factor per driver. A peak of 1 gives its weight, from 0 to 1; a lower one a tent that is 0
@@ -19,10 +20,15 @@ namespace limn {
 [[nodiscard]] float
 driven_weight(std::span<const ShapeDriver> drivers, std::span<const float> weights);
 
-/// Writes the weights of all targets with drivers, of this step and of the previous one. After
-/// update_poses.
+/// By how much a joint is bent [rad]: its angle about its first axis, from rest, positive to the
+/// side of the wider limit. 0 without an axis. `joints`: character_from_joint matrices.
+[[nodiscard]] float
+joint_bend(const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint);
+
+/// Writes the weights of all targets with drivers or of bends, of this step and of the previous
+/// one. After update_poses.
 void update_driven_shapes(
     Query<const Deformed, const MeshInstance> meshes, Query<MorphWeights> faces,
-    Res<const Assets> assets);
+    Query<const Skeleton, const Pose> bodies, Res<const Assets> assets);
 
 }  // namespace limn

@@ -2,7 +2,9 @@
 
 #include "content/make/person/person.h"
 #include "ecs/base/rotation.h"
+#include "ecs/components/bend_shapes.h"
 #include "systems/animation/twist_pose.h"
+#include "tests/content/mesh_laws.h"
 #include "tests/content/posed_mesh.h"
 #include "tests/technique.h"
 
@@ -12,6 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace limn::person_bend_test {
@@ -77,6 +81,84 @@ double narrowest(
     return least;
 }
 
+/// The triangles that `top` and what is below it move alone.
+MeshData limb_shell(const MeshData& mesh, const SkeletonData& skeleton, const char* top) {
+    std::vector<bool> carried(skeleton.joints.size(), false);
+    for (std::size_t j = joint_called(skeleton, top); j < carried.size(); ++j) {
+        const std::int32_t parent = skeleton.parents[j];
+        carried[j] = j == joint_called(skeleton, top)
+                     || (parent >= 0 && carried[static_cast<std::size_t>(parent)]);
+    }
+    MeshData shell = mesh;
+    shell.indices.clear();
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        bool inside = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = mesh.indices[i + k];
+            for (std::uint32_t w = mesh.skin.first[v]; w < mesh.skin.first[v + 1]; ++w) {
+                inside = inside && carried[mesh.skin.joints[w]];
+            }
+        }
+        if (inside) {
+            shell.indices.insert(
+                shell.indices.end(), {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
+        }
+    }
+    return shell;
+}
+
+/// The rest pose with one joint bent about its first axis, to the side of its wider limit.
+LocalPose bent(const SkeletonData& skeleton, const char* joint, float angle) {
+    LocalPose pose = skeleton.rest;
+    const std::size_t index = joint_called(skeleton, joint);
+    for (const JointFreedom& freedom : skeleton.freedoms) {
+        if (freedom.joint == index) {
+            const float side = freedom.max >= -freedom.min ? 1.0f : -1.0f;
+            pose.rotations[index] = rotation_about(freedom.axis, side * angle);
+            break;
+        }
+    }
+    return pose;
+}
+
+/// With the bend shape of a joint.
+MeshData with_bend(MeshData mesh, const std::string& joint, float weight) {
+    for (const MorphTarget& shape : mesh.morphs) {
+        for (std::size_t i = 0; shape.name == "bend " + joint && i < shape.vertices.size(); ++i) {
+            mesh.positions[shape.vertices[i]] += weight * shape.positions[i];
+        }
+    }
+    return mesh;
+}
+
+/// How far the skin reaches from a joint away from where it bends to.
+float outermost(
+    const MeshData& mesh, const SkeletonData& skeleton, const LocalPose& pose, const char* joint,
+    const char* end) {
+    const LocalPose placed = placed_joints(skeleton, pose);
+    const std::size_t middle = joint_called(skeleton, joint);
+    const auto top = static_cast<std::size_t>(skeleton.parents[middle]);
+    const Vec3 center = placed.translations[middle];
+    const Vec3 upper = glm::normalize(placed.translations[top] - center);
+    const Vec3 lower = glm::normalize(placed.translations[joint_called(skeleton, end)] - center);
+    const LocalPose folded = placed_joints(skeleton, bent(skeleton, joint, kFullBend));
+    const Vec3 fold =
+        folded.translations[joint_called(skeleton, end)] - folded.translations[middle];
+    const bool straight = glm::dot(upper, lower) < -0.8f;
+    const Vec3 out = straight ? -glm::normalize(fold - glm::dot(fold, upper) * upper)
+                              : -glm::normalize(upper + lower);
+    const MeshData moved = posed_mesh(mesh, skeleton, pose);
+    float farthest = 0;
+    for (const std::uint32_t v : mesh.indices) {
+        const Vec3 from = moved.positions[v] - center;
+        const float height = glm::dot(from, out);
+        if (glm::length(from - height * out) < 0.025f) {
+            farthest = std::max(farthest, height);
+        }
+    }
+    return farthest;
+}
+
 LocalPose with_twists(const SkeletonData& skeleton, LocalPose pose) {
     apply_twist_joints(skeleton, find_twist_links(skeleton, {}), 1, pose);
     return pose;
@@ -128,6 +210,70 @@ TEST_CASE(
         CAPTURE(twisted);
         CHECK(twisted > bare + 0.02);
     }
+}
+
+TEST_CASE(
+    "person: elbows and knees bent by 120 degrees keep the volume of a limb, by corrective shapes"
+    * technique("char.skin-defects")) {
+    struct Limb {
+        const char* joint;
+        const char* end;
+        const char* top;  ///< whose weights alone move the shell that is measured
+        float most_lost;
+    };
+    constexpr Limb kLimbs[] = {
+        {"LeftForearm", "LeftHand", "LeftUpperArm", 0.03f},
+        {"LeftShin", "LeftFoot", "LeftThigh", 0.03f}};
+    for (const int seed : {1, 2, 3}) {
+        const PersonShape shape = {
+            .part = PersonPart::Skin,
+            .seed = seed,
+            .legs = PersonLegwear::Shorts,
+            .sleeves = PersonSleeves::Short};
+        const MeshData skin = make_person(shape);
+        const SkeletonData skeleton = make_person_rig(shape).skeleton;
+        for (const Limb& limb : kLimbs) {
+            CAPTURE(seed);
+            CAPTURE(limb.joint);
+            const MeshData shell = limb_shell(skin, skeleton, limb.top);
+            const LocalPose pose = bent(skeleton, limb.joint, kFullBend);
+            const double volume = signed_volume(shell);
+            const double bare = signed_volume(posed_mesh(shell, skeleton, pose));
+            const double corrected =
+                signed_volume(posed_mesh(with_bend(shell, limb.joint, 1), skeleton, pose));
+            CAPTURE(bare / volume);
+            CAPTURE(corrected / volume);
+            CHECK(std::abs(corrected / volume - 1) < limb.most_lost);
+            CHECK(std::abs(corrected / volume - 1) < 0.5 * std::abs(bare / volume - 1));
+            // The tip of the elbow, the knee cap: half and half between two bones.
+            CHECK(outermost(shell, skeleton, skeleton.rest, limb.joint, limb.end) > 0.02f);
+            const float rest = outermost(shell, skeleton, skeleton.rest, limb.joint, limb.end);
+            CHECK(outermost(shell, skeleton, pose, limb.joint, limb.end) < 0.75f * rest);
+            CHECK(
+                outermost(with_bend(shell, limb.joint, 1), skeleton, pose, limb.joint, limb.end)
+                > 0.9f * rest);
+        }
+    }
+}
+
+TEST_CASE("person: bend shapes of all parts are the same list, and levels of detail have none") {
+    std::vector<std::string> names;
+    for (const PersonPart part :
+         {PersonPart::Skin, PersonPart::Shirt, PersonPart::Trousers, PersonPart::All}) {
+        const MeshData mesh = make_person({.part = part, .seed = 2});
+        REQUIRE(mesh.morphs.size() == 6);
+        for (std::size_t t = 0; t < 6; ++t) {
+            const MorphTarget& shape = mesh.morphs[t];
+            names.push_back(shape.name);
+            CHECK(shape.name == names[t]);
+            CHECK(shape.positions.size() == shape.vertices.size());
+            for (const Vec3& shift : shape.positions) {
+                CHECK(glm::length(shift) < 0.12f);
+            }
+        }
+    }
+    CHECK(names[0] == "bend LeftForearm");
+    CHECK(make_person({.seed = 2, .triangles = 2000}).morphs.empty());
 }
 
 }  // namespace limn::person_bend_test

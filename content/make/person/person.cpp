@@ -3,6 +3,7 @@
 #include "content/bake/tangents.h"
 #include "content/make/models/rigid_parts.h"
 #include "content/make/models/simplify_mesh.h"
+#include "content/make/person/person_bends.h"
 #include "content/make/person/person_clips.h"
 #include "content/make/person/person_parts.h"
 
@@ -83,6 +84,8 @@ MeshData make_person(const PersonShape& shape) {
     }
     if (shape.triangles > 0) {
         simplify_mesh(mesh, static_cast<std::size_t>(shape.triangles));
+    } else if (shape.part != PersonPart::Eyes && shape.part != PersonPart::Hair) {
+        add_bend_shapes(mesh, make_person_skeleton(frame));
     }
     update_bounds(mesh);
     return mesh;
