@@ -3,14 +3,20 @@
 #include "systems/animation/driven_shapes_system.h"
 #include "systems/update_world.h"
 #include "tests/near.h"
+#include "tests/systems/clip_fixture.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace limn::driven_shapes_test {
 
+using test::make_chain;
 using test::near;
 
 namespace {
@@ -113,6 +119,44 @@ TEST_CASE("driven shapes: drivers count from the mesh's first weight, and short 
     CHECK(cut.weights() == std::vector<float>{0.5f, 1, 1});
     Face beyond(MorphWeights{{0.5f}, {}}, 4);
     CHECK(beyond.weights() == std::vector<float>{0.5f});
+}
+
+TEST_CASE(
+    "driven shapes: a bend shape follows its joint, to one side, whatever the body does"
+    * technique("char.skin-defects")) {
+    SkeletonData skeleton = make_chain(3);
+    skeleton.freedoms = {{.joint = 2, .axis = {1, 0, 0}, .min = -2.5f, .max = 0.1f}};
+    for (const float angle : {-2.6f, -2.0944f, -1.2f, -0.5f, 0.0f, 0.4f}) {
+        CAPTURE(angle);
+        Assets assets;
+        assets.skeletons.push_back(skeleton);
+        assets.skeletons[0].rest.rotations[1] = rotation_about({1, 2, 3}, 0.7f);
+        assets.skeletons[0].rest.rotations[2] = rotation_about({0, 0, 1}, 0.4f);
+        assets.meshes.push_back(make_point());
+        assets.meshes[0].morphs[0].name = "bend joint 2";
+        assets.meshes[0].morphs[1].name = "bend no such joint";
+        ClipData clip;
+        ClipSheet sheet;
+        sheet.times = {0};
+        sheet.rotating = {1, 2};
+        sheet.rotations = {
+            rotation_about({0, 1, 0}, 1.1f),
+            rotation_about({0, 0, 1}, 0.4f) * rotation_about({1, 0, 0}, angle)};
+        clip.sheets.push_back(sheet);
+        assets.clips.push_back(clip);
+        World world;
+        Schedule schedule = make_world_schedule();
+        world.insert_resource(std::move(assets));
+        const Entity body = world.create(
+            Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {0}}, MeshInstance{MeshId{0}, {}});
+        world.add(body, Deformed{body, {}, 0});
+        step_world(world, schedule);
+        const std::vector<float>& weights = world.get<const MorphWeights>(body).weights;
+        const float full = -2.0944f;
+        const double wanted = angle >= 0 ? 0.0 : 1 / std::cos(0.5 * std::max(angle, full)) - 1;
+        CHECK(weights[0] == near(wanted).epsilon(1e-3));
+        CHECK(weights[1] == 0);
+    }
 }
 
 }  // namespace limn::driven_shapes_test
