@@ -20,7 +20,7 @@ enum class PassingSide : std::uint8_t {
 };
 
 /// A walker, without a Parent: a disc that avoids others and CrowdObstacles. It goes to its
-/// CrowdGoal or, without one, where its MoveIntent says.
+/// CrowdGoal or, without one, where its MoveIntent says. It stands on Walkable ground.
 struct CrowdAgent {
     float radius = 0.3f;
     float speed = 1.3f;
@@ -31,6 +31,7 @@ struct CrowdAgent {
     PassingSide side = PassingSide::Seeded;
     float turn_speed = 4.0f;
     float stride = 0.0f;
+    float climb = 0.45f;
 };
 
 LIMN_FIELDS(CrowdAgent) {
@@ -51,6 +52,11 @@ LIMN_FIELDS(CrowdAgent) {
         "distance in one loop of its clip_player, whose time then follows the distance that "
         "it walks; 0: by time",
         "m", 0, 100);
+    LIMN_FIELD(
+        climb,
+        "highest step up or down that it takes on walkable ground; where there is none so near, it "
+        "keeps its height",
+        "m", 0, 10);
 }
 
 /// Where a walker goes: to the entity `exit` or, without one, to `point`. It walks around what

@@ -3,6 +3,7 @@
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
+#include "systems/crowd/crowd_floor.h"
 #include "systems/crowd/crowd_places.h"
 
 #include <glm/geometric.hpp>
@@ -187,12 +188,20 @@ bool is_sound_walker(const CrowdWalker& walker) {
 }
 
 void write_walker(
-    const CrowdWalker& walker, const PlacedWalker& placed, const Assets& assets, float step) {
+    const CrowdWalker& walker, const PlacedWalker& placed, const CrowdFloor& floor,
+    const Assets& assets, float step) {
     placed.state->velocity = walker.velocity;
     placed.state->detour = walker.detour;
     placed.transform->position.x = walker.position.x;
     placed.transform->position.z = walker.position.y;
     const float speed2 = glm::dot(walker.velocity, walker.velocity);
+    if (placed.agent->climb > 0) {
+        float& height = placed.transform->position.y;
+        height = follow_floor(
+            height,
+            find_floor(floor, placed.transform->position, placed.agent->climb).value_or(height),
+            std::sqrt(speed2), step);
+    }
     const Vec2 toward = placed.facing != Vec2(0)         ? placed.facing
                         : speed2 > square(kHeadingSpeed) ? walker.velocity
                                                          : Vec2(0);
@@ -221,13 +230,13 @@ void add_crowd_states(Query<const CrowdAgent, Without<CrowdState>> bare, Command
 
 void update_crowd(
     WalkerQuery walkers, Query<const CrowdObstacle> obstacles, Query<const CrowdExit> exits,
-    Query<const CrowdSpace> spaces, Query<const Transform> transforms, Query<const Parent> parents,
-    Res<const Assets> assets, Res<CrowdMemory> memory, Res<const RandomSeed> seed,
-    Res<const FrameTime> time) {
+    Query<const CrowdSpace> spaces, GroundQueries grounds, Res<const Assets> assets,
+    Res<CrowdMemory> memory, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     if (walkers.empty()) {
         return;
     }
-    const Placements placements(transforms, parents);
+    const Placements placements(grounds.transforms, grounds.parents);
+    const CrowdFloor floor = place_floor(grounds);
     const CrowdGround ground = place_ground(obstacles, exits, spaces, placements);
     find_ways(ground, memory->ways);
     thread_local std::vector<PlacedWalker> placed_memory;  // reused between steps
@@ -264,7 +273,7 @@ void update_crowd(
     step_crowd(memory->walkers, ground.barriers, time->step, memory->scratch);
     parallel_for(placed.size(), kWalkerGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            write_walker(memory->walkers[i], placed[i], *assets, time->step);
+            write_walker(memory->walkers[i], placed[i], floor, *assets, time->step);
         }
     });
 }

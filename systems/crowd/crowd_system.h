@@ -10,6 +10,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/characters/grounds.h"
 #include "systems/crowd/flow_field.h"
 #include "systems/crowd/step_crowd.h"
 
@@ -19,7 +20,7 @@
 namespace limn {
 
 // Walkers go to their goals: wanted velocities from goals, flow fields and intents, one step of all
-// (step_crowd.h), then headings and the speeds of their clips.
+// (step_crowd.h), then headings, heights on walkable ground and the speeds of their clips.
 
 /// Resource: what update_crowd() computed and keeps; derived, never saved.
 struct CrowdMemory {
@@ -42,8 +43,7 @@ using WalkerQuery = Query<
 /// Walkers whose numbers are not finite neither move nor are seen.
 void update_crowd(
     WalkerQuery walkers, Query<const CrowdObstacle> obstacles, Query<const CrowdExit> exits,
-    Query<const CrowdSpace> spaces, Query<const Transform> transforms, Query<const Parent> parents,
-    Res<const Assets> assets, Res<CrowdMemory> memory, Res<const RandomSeed> seed,
-    Res<const FrameTime> time);
+    Query<const CrowdSpace> spaces, GroundQueries grounds, Res<const Assets> assets,
+    Res<CrowdMemory> memory, Res<const RandomSeed> seed, Res<const FrameTime> time);
 
 }  // namespace limn
