@@ -21,7 +21,7 @@ Result<std::uint16_t> find_posed_joint(const SkeletonData& skeleton, const std::
     return static_cast<std::uint16_t>(found - skeleton.joints.begin());
 }
 
-bool is_finite_pose(const PosedJoint& posed) {
+bool is_finite_pose(const KeyedJoint& posed) {
     const Quat& q = posed.turn;
     return is_finite(posed.shift) && std::isfinite(q.x + q.y + q.z + q.w);
 }
@@ -36,7 +36,7 @@ struct PoseTable {
 
 Status
 fill_key(const SkeletonData& skeleton, const PoseKey& key, std::size_t row, PoseTable& table) {
-    for (const PosedJoint& posed : key.joints) {
+    for (const KeyedJoint& posed : key.joints) {
         const std::uint16_t joint = LIMN_TRY(find_posed_joint(skeleton, posed.joint));
         if (!is_finite_pose(posed)) {
             return fail("joint \"{}\" has numbers that are not finite", posed.joint);

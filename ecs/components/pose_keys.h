@@ -15,13 +15,13 @@ namespace limn {
 // Techniques: anim.pose-keys, char.fk-keypose
 
 /// A joint off its rest pose: rotation = rest * turn, translation = rest + shift.
-struct PosedJoint {
+struct KeyedJoint {
     std::string joint{};
     Quat turn = {1, 0, 0, 0};
     Vec3 shift = {0, 0, 0};
 };
 
-LIMN_FIELDS(PosedJoint) {
+LIMN_FIELDS(KeyedJoint) {
     LIMN_FIELD(joint, "by name");
     LIMN_FIELD(turn, "rotation from the rest pose, in the joint's space");
     LIMN_FIELD(shift, "translation from the rest pose, in the parent's space", "m");
@@ -30,7 +30,7 @@ LIMN_FIELDS(PosedJoint) {
 /// The pose at a time.
 struct PoseKey {
     float time = 0.0f;
-    std::vector<PosedJoint> joints{};
+    std::vector<KeyedJoint> joints{};
 };
 
 LIMN_FIELDS(PoseKey) {

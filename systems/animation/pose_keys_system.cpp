@@ -50,7 +50,9 @@ void prepare_pose_keys(
 
 void advance_pose_keys(Query<const PoseKeysState, ClipPlayer> players, Res<const FrameTime> time) {
     players.each([&](const PoseKeysState& state, ClipPlayer& player) {
-        player.time = step_clip_time(player, state.clip.duration, time->step);
+        if (player.speed != 0.0f) {
+            player.time = step_clip_time(player, state.clip.duration, time->step);
+        }
     });
 }
 

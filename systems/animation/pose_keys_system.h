@@ -26,7 +26,8 @@ void prepare_pose_keys(
     Query<const PoseKeys, const Skeleton, PoseKeysState, Changed<PoseKeys>> keyed,
     Res<const Assets> assets);
 
-/// Advances the ClipPlayer of every character with keys by one step, within their duration.
+/// Advances the ClipPlayer of every character with keys by one step, within their duration. One
+/// that stands still may be beyond the last key, where the next one is to be set.
 void advance_pose_keys(Query<const PoseKeysState, ClipPlayer> players, Res<const FrameTime> time);
 
 }  // namespace limn

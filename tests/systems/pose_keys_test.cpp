@@ -146,6 +146,14 @@ TEST_CASE("pose keys: a loop starts over, and jumps without velocity") {
     CHECK(to_mat4(pose.previous[1]) != to_mat4(pose.joints[1]));
 }
 
+TEST_CASE("pose keys: one that stands still stays where it is, also after the last key") {
+    KeyedStage stage(wave());
+    stage.world.get<ClipPlayer>(stage.character) = {.clip = {}, .time = 5, .speed = 0};
+    stage.step(3);
+    CHECK(stage.world.get<const ClipPlayer>(stage.character).time == 5);
+    CHECK(angle_between(stage.rotation(), about_z(-30)) < 1e-3f);
+}
+
 TEST_CASE("pose keys: a snapshot continues with the same poses") {
     KeyedStage stage(wave(true));
     stage.step(20);

@@ -18,7 +18,7 @@ namespace {
 /// Differences from the rest pose below this are none: rounding of unit quaternions.
 constexpr float kAtRest = 1e-6f;
 
-bool is_at_rest(const PosedJoint& posed) {
+bool is_at_rest(const KeyedJoint& posed) {
     return glm::length(Vec3(posed.turn.x, posed.turn.y, posed.turn.z)) <= kAtRest
            && glm::length(posed.shift) <= kAtRest;
 }
@@ -30,11 +30,11 @@ auto key_from(std::vector<PoseKey>& keys, float time) {
     });
 }
 
-struct SidePair {
+struct SideNames {
     std::string_view left;
     std::string_view right;
 };
-constexpr std::array<SidePair, 8> kSides = {
+constexpr std::array<SideNames, 8> kSideNames = {
     {{"Left", "Right"},
      {"left", "right"},
      {".L", ".R"},
@@ -54,7 +54,7 @@ std::string mirror_name(const std::string& name) {
         }
         return name.substr(0, at) + std::string(to) + name.substr(at + from.size());
     };
-    for (const SidePair& side : kSides) {
+    for (const SideNames& side : kSideNames) {
         for (const auto& [from, to] :
              {std::pair(side.left, side.right), std::pair(side.right, side.left)}) {
             if (std::string mirrored = exchange(from, to); !mirrored.empty()) {
@@ -104,7 +104,7 @@ void set_pose_key(PoseKeys& keys, const SkeletonData& skeleton, float time, cons
     PoseKey& key = exists ? *at : *keys.keys.insert(at, PoseKey{.time = time});
     key.joints.clear();
     for (std::uint16_t j = 0; j < pose.size(); ++j) {
-        PosedJoint posed = posed_joint(skeleton, pose, j);
+        KeyedJoint posed = keyed_joint(skeleton, pose, j);
         if (!is_at_rest(posed)) {
             key.joints.push_back(std::move(posed));
         }
@@ -119,7 +119,7 @@ bool remove_pose_key(PoseKeys& keys, float time) {
     return found.has_value();
 }
 
-PosedJoint posed_joint(const SkeletonData& skeleton, const LocalPose& pose, std::uint16_t joint) {
+KeyedJoint keyed_joint(const SkeletonData& skeleton, const LocalPose& pose, std::uint16_t joint) {
     const Quat turn =
         glm::normalize(glm::conjugate(skeleton.rest.rotations[joint]) * pose.rotations[joint]);
     return {
@@ -161,7 +161,7 @@ LocalPose mirror_pose(const SkeletonData& skeleton, const LocalPose& pose) {
     LocalPose mirrored = pose;
     for (std::uint16_t j = 0; j < pose.size(); ++j) {
         const std::uint16_t other = others[j];
-        const PosedJoint from = posed_joint(skeleton, pose, other);
+        const KeyedJoint from = keyed_joint(skeleton, pose, other);
         const Quat seen = rests[other] * from.turn * glm::conjugate(rests[other]);
         const Quat reflected(seen.w, seen.x, -seen.y, -seen.z);
         turn_joint(skeleton, j, glm::conjugate(rests[j]) * reflected * rests[j], mirrored);

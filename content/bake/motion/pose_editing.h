@@ -32,8 +32,8 @@ void set_pose_key(PoseKeys& keys, const SkeletonData& skeleton, float time, cons
 bool remove_pose_key(PoseKeys& keys, float time);
 
 /// The rotation of `joint` from its rest pose; translation likewise.
-[[nodiscard]] PosedJoint
-posed_joint(const SkeletonData& skeleton, const LocalPose& pose, std::uint16_t joint);
+[[nodiscard]] KeyedJoint
+keyed_joint(const SkeletonData& skeleton, const LocalPose& pose, std::uint16_t joint);
 
 /// Sets the rotation of `joint` from its rest pose.
 void turn_joint(
