@@ -80,22 +80,6 @@ const Material* material_of(const World& world, Entity entity) {
                : nullptr;
 }
 
-/// Records that the target of `edit` now is `after`. Extends the last edit of the same target while
-/// a widget or a tip is held.
-void record_edit(
-    World& world, UndoStack& undo, Edit edit, AnyComponent after, const std::string& what,
-    std::string& last) {
-    apply_edit_value(world, edit, after);
-    edit.label = what;
-    if (last == what && undo.redo_count() == 0 && undo.undo_count() > 0) {
-        undo.extend(std::move(after));
-        return;
-    }
-    last = what;
-    edit.after = std::move(after);
-    undo.record(std::move(edit));
-}
-
 /// Radius of the tips in window pixels; the rendered image may have fewer rows [px].
 float tip_radius(const RenderView& view, const IVec2& window) {
     const float rows = static_cast<float>(std::max(view.height, 1));

@@ -8,6 +8,7 @@
 #include "content/load/level/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/furrows.h"
 #include "ecs/components/motion_graph.h"
 #include "ecs/components/name.h"
@@ -352,6 +353,9 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         }
         if (info.id == component_id<Furrows> && ImGui::SmallButton("Edit furrows")) {
             furrows_ = true;
+        }
+        if (info.id == component_id<Skeleton> && ImGui::SmallButton("Show skeleton (Shift F2)")) {
+            skeleton_ = true;
         }
         const std::string label = fmt::format("{}: {}", entity_label(world, selected_), info.name);
         edit_copy(style, world, std::move(edit), info, value.data(), label);

@@ -45,6 +45,8 @@ class Inspector {
     [[nodiscard]] bool take_step() { return std::exchange(step_, false); }
     /// Whether "Edit furrows" of the selected entity was pressed since the last call.
     [[nodiscard]] bool take_furrows() { return std::exchange(furrows_, false); }
+    /// Whether "Show skeleton" of the selected entity was pressed since the last call.
+    [[nodiscard]] bool take_skeleton() { return std::exchange(skeleton_, false); }
     /// For a new world: clears the selection and the undo stack.
     void reset();
 
@@ -91,6 +93,7 @@ class Inspector {
     bool focus_ = false;
     bool step_ = false;
     bool furrows_ = false;
+    bool skeleton_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
     double rows_built_at_ = -1.0;  // [s]

@@ -59,6 +59,20 @@ bool is_target(const Edit& edit, const LevelChange& change) {
 
 }  // namespace
 
+void record_edit(
+    World& world, UndoStack& undo, Edit edit, AnyComponent after, const std::string& what,
+    std::string& last) {
+    apply_edit_value(world, edit, after);
+    edit.label = what;
+    if (last == what && undo.redo_count() == 0 && undo.undo_count() > 0) {
+        undo.extend(std::move(after));
+        return;
+    }
+    last = what;
+    edit.after = std::move(after);
+    undo.record(std::move(edit));
+}
+
 bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value) {
     switch (edit.part) {
     case LevelPart::Component:

@@ -63,4 +63,10 @@ class UndoStack {
 /// false if the target no longer exists.
 bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value);
 
+/// Sets the target of `edit` to `after` and records that as `what`. Extends the last edit instead
+/// if `last`, the name of the edit of a widget or a handle that is still held, is the same.
+void record_edit(
+    World& world, UndoStack& undo, Edit edit, AnyComponent after, const std::string& what,
+    std::string& last);
+
 }  // namespace limn

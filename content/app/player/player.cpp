@@ -157,6 +157,9 @@ Status Player::run() {
         if (inspector_.take_furrows()) {
             edit_furrows();
         }
+        if (inspector_.take_skeleton()) {
+            skeleton_.open(find_character(stage_->world, inspector_.selected()));
+        }
         if (furrows_.take_reset()) {
             face_furrows();
         }

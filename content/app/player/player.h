@@ -9,6 +9,7 @@
 #include "content/app/panels/model_panel.h"
 #include "content/app/panels/profiler_panel.h"
 #include "content/app/panels/shows_panel.h"
+#include "content/app/panels/skeleton_panel.h"
 #include "content/app/player/detail_costs.h"
 #include "content/app/player/light_drag.h"
 #include "content/app/player/pick.h"
@@ -107,6 +108,8 @@ class Player {
     /// Whether an editor takes the pointer in this frame, so that it moves no camera.
     [[nodiscard]] bool edit_by_pointer(const WindowEvents& events);
     void edit_furrows();
+    /// Shows the skeleton of the selected character, or of the only one; or hides it.
+    void toggle_skeleton();
     /// Makes view and light face the entity whose furrows are edited.
     void face_furrows();
 
@@ -161,6 +164,7 @@ class Player {
     ProfilerPanel profiler_;
     ModelPanel model_panel_;
     FurrowPanel furrows_;
+    SkeletonPanel skeleton_;
     LightDrag light_;
     SkinDrag skin_;
     LeaveDialog leave_;

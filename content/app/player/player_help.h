@@ -21,18 +21,21 @@ class World;
 struct HelpState {
     CameraMode camera = CameraMode::Level;
     Entity level_camera = {};
-    bool drives = false;     ///< the level's camera follows something that the keys drive
-    bool throws = false;     ///< a click throws a stone
-    bool paths = false;      ///< there are paths to show
-    bool model = false;      ///< a single model is shown
-    bool show = false;       ///< a technique with and without is loaded
-    bool selected = false;   ///< an entity is
-    bool edited = false;     ///< there is something to undo or to redo
-    bool inspector = false;  ///< its panel is open
-    bool furrows = false;    ///< the editor of furrows is open
-    bool skin = false;       ///< some skin can be pulled
-    bool panel = false;      ///< some panel is open
-    bool relief = false;     ///< some material has surface detail beyond normal maps
+    bool drives = false;      ///< the level's camera follows something that the keys drive
+    bool throws = false;      ///< a click throws a stone
+    bool paths = false;       ///< there are paths to show
+    bool model = false;       ///< a single model is shown
+    bool show = false;        ///< a technique with and without is loaded
+    bool selected = false;    ///< an entity is
+    bool edited = false;      ///< there is something to undo or to redo
+    bool inspector = false;   ///< its panel is open
+    bool furrows = false;     ///< the editor of furrows is open
+    bool characters = false;  ///< there are some
+    bool skeleton = false;    ///< one is shown
+    bool poses = false;       ///< and posed
+    bool skin = false;        ///< some skin can be pulled
+    bool panel = false;       ///< some panel is open
+    bool relief = false;      ///< some material has surface detail beyond normal maps
 };
 
 /// A key of the window: its action and when the help lists it.

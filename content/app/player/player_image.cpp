@@ -15,6 +15,8 @@
 #include "ecs/components/weather.h"
 #include "render/graph/frame_graph.h"
 #include "render/particles/gpu_particle_pools.h"
+#include "systems/animation/pose_keys_system.h"
+#include "systems/animation/pose_system.h"
 #include "systems/transform_system.h"
 
 #include <fmt/format.h>
@@ -55,6 +57,16 @@ void fit_detail(World& world, float particle_share, int rows) {
     rendering.level_rows = static_cast<float>(std::clamp(rows, 16, 16384));
 }
 
+/// Poses characters as they were edited, without velocity.
+void pose_again(World& world) {
+    world.run(add_pose_keys_states);
+    world.run(release_pose_keys);
+    world.run(prepare_pose_keys);
+    world.run(update_poses);
+    world.run(update_poses);
+    world.run(update_attachments);
+}
+
 }  // namespace
 
 void Player::draw_frame(float dt, const Input& input) {
@@ -69,6 +81,10 @@ void Player::draw_frame(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
     if (furrows_.is_open()) {
         stage_->world.run(update_furrow_skins);  // also while paused
+    }
+    skeleton_.record(stage_->world, stage_time(*stage_));
+    if (skeleton_.poses() && paused_) {
+        pose_again(stage_->world);  // at the time that the panel sets
     }
     show_edits();
     const IVec2 size = render_size(scale_, window_size);
@@ -101,6 +117,7 @@ void Player::show_edits() {
     for (Stage* const played : {stage_.get(), off_stage_.get()}) {
         if (played != nullptr && paused_) {
             played->world.run(update_furrow_skins);
+            pose_again(played->world);
             // Twice: what an edit moved must have no velocity.
             played->world.run(update_transforms);
             played->world.run(update_transforms);
@@ -167,6 +184,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     if (paths_shown_) {
         draw_path_overlay(view, stage_->world);
     }
+    skeleton_.draw_overlay(view, stage_->world);
     draw_comparison_overlay(hud_->style(), stage_->world);
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
@@ -202,6 +220,10 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     shows_.draw(hud_->style(), options_.show);
     furrows_.draw(hud_->style(), stage_->world, inspector_.undo_stack());
     if (const std::string message = furrows_.take_message(); !message.empty()) {
+        hud_->toast(message);
+    }
+    skeleton_.draw(hud_->style(), stage_->world, inspector_.undo_stack());
+    if (const std::string message = skeleton_.take_message(); !message.empty()) {
         hud_->toast(message);
     }
     model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
@@ -255,6 +277,9 @@ HelpState Player::help_state() const {
         .edited = undo.undo_count() + undo.redo_count() > 0,
         .inspector = inspector_.open,
         .furrows = furrows_.is_open(),
+        .characters = !std::as_const(stage_->world).query<const Skeleton>().empty(),
+        .skeleton = skeleton_.is_open(),
+        .poses = skeleton_.poses(),
         .skin = !std::as_const(stage_->world).query<const PullableSkin>().empty(),
         .panel =
             inspector_.open || profiler_.open || buffers_->open || shows_.open || model_panel_.open,

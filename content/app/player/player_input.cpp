@@ -115,6 +115,9 @@ bool Player::edit_by_pointer(const WindowEvents& events) {
     if (furrows_.take_pointer(world, undo, view_, pointer)) {
         return true;
     }
+    if (skeleton_.take_pointer(world, undo, view_, pointer)) {
+        return true;
+    }
     const bool directs = pointer.left && window_->is_key_down(GLFW_KEY_L) && !pointer.blocked
                          && !hud_->wants_keyboard();
     skin_.follow(std::as_const(world), pointer_ray(), pointer.left, pointer.blocked || directs);

@@ -76,6 +76,9 @@ std::span<const PlayerKey> Player::keys() {
          [](Player& p) { p.hud_->help_open = !p.hud_->help_open; }},
         {"Panels", "F2", "inspector: every entity and component", GLFW_KEY_F2, 0,
          [](Player& p) { p.inspector_.open = !p.inspector_.open; }},
+        {"Panels", "Shift F2", "skeleton of a character: ghosts, trails, curves, poses",
+         GLFW_KEY_F2, kShift, [](Player& p) { p.toggle_skeleton(); },
+         [](const HelpState& state) { return state.characters; }},
         {"Panels", "F3", "profiler of systems and passes", GLFW_KEY_F3, 0,
          [](Player& p) { p.profiler_.open = !p.profiler_.open; }},
         {"Panels", "F4", "intermediate textures of the frame", GLFW_KEY_F4, 0,
@@ -131,6 +134,14 @@ std::span<const PlayerKey> Player::keys() {
          .label = "Drag",
          .text = "furrows: the tip of a vector; right drag: the light",
          .shown = edits_furrows},
+        {.heading = "Edit",
+         .label = "Click",
+         .text = "skeleton: select a joint",
+         .shown = [](const HelpState& state) { return state.skeleton; }},
+        {.heading = "Edit",
+         .label = "Drag",
+         .text = "skeleton: a ring of the joint turns it, and sets a key",
+         .shown = [](const HelpState& state) { return state.poses; }},
         {"Edit", "Ctrl Z", "undo", GLFW_KEY_Z, kControl, [](Player& p) { p.undo_or_redo(true); },
          has_edits},
         {"Edit", "Ctrl Y", "redo", GLFW_KEY_Y, kControl, [](Player& p) { p.undo_or_redo(false); },
@@ -184,6 +195,10 @@ void Player::close_one_or_ask() {
     }
     if (furrows_.is_open()) {
         furrows_.close(stage_->world);
+        return;
+    }
+    if (skeleton_.is_open()) {
+        skeleton_.close();
         return;
     }
     const std::pair<std::string_view, bool*> panels[] = {

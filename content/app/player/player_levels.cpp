@@ -35,6 +35,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     level_error_.clear();
     inspector_.reset();
     furrows_.reset();
+    skeleton_.reset();
     camera_ = {};
     detail_costs_.forget();
     const Bounds& bounds = stage_->scene.bounds;

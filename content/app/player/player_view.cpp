@@ -146,6 +146,17 @@ void Player::edit_furrows() {
     focus_selection();
 }
 
+void Player::toggle_skeleton() {
+    const Entity character = find_character(stage_->world, inspector_.selected());
+    if (skeleton_.is_open()) {
+        skeleton_.close();
+    } else if (character.is_null()) {
+        hud_->toast("select a character: click it, or choose it in the inspector (F2)");
+    } else {
+        skeleton_.open(character);
+    }
+}
+
 void Player::face_furrows() {
     World& world = stage_->world;
     const auto* const transform = std::as_const(world).find<WorldTransform>(furrows_.entity());

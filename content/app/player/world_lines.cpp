@@ -29,8 +29,8 @@ ImVec2 to_screen(const Vec4& clip) {
 
 }  // namespace
 
-WorldLines::WorldLines(const RenderView& view, const Vec3& color)
-    : view_(view), color_(ImGui::GetColorU32({color.x, color.y, color.z, 0.9f})) {}
+WorldLines::WorldLines(const RenderView& view, const Vec3& color, float opacity)
+    : view_(view), color_(ImGui::GetColorU32({color.x, color.y, color.z, opacity})) {}
 
 void WorldLines::draw_line(const Vec3& from, const Vec3& to, float width) {
     Vec4 a = view_.unjittered_from_world * Vec4(from, 1.0f);

@@ -14,7 +14,7 @@ struct RenderView;
 class WorldLines {
   public:
     /// `color` is sRGB, 0 .. 1.
-    WorldLines(const RenderView& view, const Vec3& color);
+    WorldLines(const RenderView& view, const Vec3& color, float opacity = 0.9f);
 
     void draw_line(const Vec3& from, const Vec3& to, float width = 1.5f);
     /// A dot with an optional label beside it.

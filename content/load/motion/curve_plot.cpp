@@ -20,18 +20,6 @@ constexpr double kPlotHeight = 360;
 constexpr double kPlotMargin = 50;
 constexpr std::array<const char*, 3> kCurveColors = {"#c33", "#2a2", "#36c"};  // by axis
 
-/// A step of 1, 2 or 5 times a power of ten that divides `range` into at most ten.
-double nice_step(double range) {
-    const double rough = std::max(range, 1e-9) / 8;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    for (const double factor : {1.0, 2.0, 5.0}) {
-        if (factor * power >= rough) {
-            return factor * power;
-        }
-    }
-    return 10 * power;
-}
-
 std::string escape_svg(std::string_view text) {
     std::string escaped;
     for (const char c : text) {
@@ -66,12 +54,12 @@ class PlotArea {
                 "<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", fixed_text(at_x, 2),
                 fixed_text(at_y, 2), anchor, text);
         };
-        const double value_step = nice_step(high_ - low_);
+        const double value_step = nice_plot_step(high_ - low_);
         for (double v = std::ceil(low_ / value_step) * value_step; v <= high_; v += value_step) {
             line(x(0), y(v), x(duration_), y(v));
             label(x(0) - 6, y(v) + 4, "end", fixed_text(v, value_step < 1 ? 2 : 0));
         }
-        const double time_step = nice_step(duration_);
+        const double time_step = nice_plot_step(duration_);
         for (double t = 0; t <= duration_ * 1.0001; t += time_step) {
             line(x(t), y(low_), x(t), y(high_));
             label(x(t), y(low_) + 18, "middle", fixed_text(t, time_step < 0.1 ? 2 : 1) + " s");
@@ -86,6 +74,17 @@ class PlotArea {
 };
 
 }  // namespace
+
+double nice_plot_step(double range) {
+    const double rough = std::max(range, 1e-9) / 8;
+    const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    for (const double factor : {1.0, 2.0, 5.0}) {
+        if (factor * power >= rough) {
+            return factor * power;
+        }
+    }
+    return 10 * power;
+}
 
 Result<std::vector<ChannelCurve>>
 find_channel_curves(const BvhFile& bvh, const std::string& joint) {

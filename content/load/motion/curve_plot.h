@@ -18,6 +18,10 @@ struct ChannelCurve {
 [[nodiscard]] Result<std::vector<ChannelCurve>>
 find_channel_curves(const BvhFile& bvh, const std::string& joint);
 
+/// Distance of the lines of a plot's grid: a step of 1, 2 or 5 times a power of ten that divides
+/// `range` > 0 into at most ten.
+[[nodiscard]] double nice_plot_step(double range);
+
 /// The curves as an SVG with axes of degrees and seconds; each passes through all its samples
 /// (char.ghost-view).
 [[nodiscard]] std::string

@@ -158,6 +158,10 @@ std::vector<float> ghost_times(float duration, const GhostOptions& options) {
     return times;
 }
 
+float ghost_opacity(std::size_t ghost, std::size_t count) {
+    return glm::mix(kFaintest, 0.8f, static_cast<float>(ghost + 1) / static_cast<float>(count));
+}
+
 Result<GltfScene> make_ghost_scene(
     const std::string& name, const SkeletonMotion& motion, const GhostOptions& options) {
     GhostScene ghosts(name, motion);
@@ -172,9 +176,8 @@ Result<GltfScene> make_ghost_scene(
         highlight = LIMN_TRY(find_joint_named(ghosts.skeleton(), options.highlight));
     }
     for (std::size_t k = 0; k < times.size(); ++k) {
-        const float part = static_cast<float>(k + 1) / static_cast<float>(times.size());
-        const float opacity = k + 1 == times.size() ? 1.0f : glm::mix(kFaintest, 0.8f, part);
-        ghosts.add_ghost(times[k], opacity, highlight);
+        const bool is_last = k + 1 == times.size();
+        ghosts.add_ghost(times[k], is_last ? 1.0f : ghost_opacity(k, times.size()), highlight);
     }
     for (const std::string& trail : options.trails) {
         const std::uint16_t joint = LIMN_TRY(find_joint_named(ghosts.skeleton(), trail));

@@ -25,6 +25,9 @@ struct GhostOptions {
 /// Times of the ghosts: floor((end - begin) / step) + 1 of them.
 [[nodiscard]] std::vector<float> ghost_times(float duration, const GhostOptions& options);
 
+/// Opacity of a ghost, 0 .. 1: the earlier the fainter. `ghost` < `count` counts from the earliest.
+[[nodiscard]] float ghost_opacity(std::size_t ghost, std::size_t count);
+
 /// A scene without joints. Fails with one line on an unknown joint and on more than 1000 ghosts.
 [[nodiscard]] Result<GltfScene> make_ghost_scene(
     const std::string& name, const SkeletonMotion& motion, const GhostOptions& options);
