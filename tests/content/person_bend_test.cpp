@@ -5,7 +5,7 @@
 #include "ecs/components/bend_shapes.h"
 #include "systems/animation/twist_pose.h"
 #include "tests/content/mesh_laws.h"
-#include "tests/content/posed_mesh.h"
+#include "tests/content/posed_person.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>

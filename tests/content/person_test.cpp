@@ -1,7 +1,7 @@
 #include "content/make/person/person.h"
 #include "ecs/components/humanoid.h"
 #include "tests/content/mesh_laws.h"
-#include "tests/content/posed_mesh.h"
+#include "tests/content/posed_person.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
