@@ -21,6 +21,7 @@
 #include "systems/animation/twist_joint_system.h"
 #include "systems/animation/walk/crowd_script_system.h"
 #include "systems/animation/walk/crowd_walk_system.h"
+#include "systems/animation/walk/motor_pose_system.h"
 #include "systems/animation/walk/walk_system.h"
 #include "systems/attach_system.h"
 #include "systems/autofocus_system.h"
@@ -128,9 +129,12 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_twist_links>(Create, Both);
     systems.add<add_foot_contacts>(Create, Both);
     systems.add<add_walk_states>(Create, Both);
+    systems.add<add_motor_poses>(Create, Both);
     systems.add<add_crowd_walks>(Create, Both);
     systems.add<update_walk_routes>(Animate);
     systems.add<update_walks>(Animate, Both);  // after all that moves characters
+    systems.add<update_motor_poses>(
+        Animate, Both);  // after walks: moves feet that are off the ground
     systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
     systems.add<update_twist_links>(Animate, Both);

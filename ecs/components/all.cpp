@@ -40,6 +40,7 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/motion_graph.h"
 #include "ecs/components/motor.h"
+#include "ecs/components/motor_pose.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
@@ -154,6 +155,8 @@ void register_all_components() {
     register_component<MotionStyle>();
     register_component<CharacterMotor>();
     register_component<MotorState>();
+    register_component<MotorPose>();
+    register_component<MotorPoseState>();
     register_component<Hero>();
     register_component<LooseBody>();
     register_component<LooseState>();

@@ -19,6 +19,7 @@ struct CharacterMotor {
     float acceleration = 14.0f;
     float air_acceleration = 3.0f;
     float jump = 0.9f;
+    float take_off = 0.0f;
     float turn = 9.0f;
     float swim_speed = 1.1f;
     float push = 80.0f;
@@ -32,6 +33,7 @@ LIMN_FIELDS(CharacterMotor) {
     LIMN_FIELD(acceleration, "on the ground", "m/s^2", 0, 1000);
     LIMN_FIELD(air_acceleration, "in the air and in water", "m/s^2", 0, 1000);
     LIMN_FIELD(jump, "height of a jump", "m", 0, 100);
+    LIMN_FIELD(take_off, "time for which it crouches before it jumps", "s", 0, 1);
     LIMN_FIELD(turn, "largest speed of turning", "rad/s", 0, 100);
     LIMN_FIELD(swim_speed, "largest speed in water", "m/s", 0, 100);
     LIMN_FIELD(push, "mass with which it pushes loose bodies", "kg", 0, 1e6);
@@ -52,6 +54,7 @@ struct MotorState {
     Vec3 ahead = Vec3(0, 0, 1);
     float depth = -1.0f;
     float air_time = 0.0f;
+    float gather = 0.0f;
     MotorMode mode = MotorMode::Fall;
 };
 
@@ -63,6 +66,7 @@ LIMN_FIELDS(MotorState) {
     LIMN_FIELD(ahead, "+z of the character in that space");
     LIMN_FIELD(depth, "of the water above the soles; < 0: none", "m");
     LIMN_FIELD(air_time, "since it last stood", "s");
+    LIMN_FIELD(gather, "since it crouches for a jump", "s");
     LIMN_FIELD(mode, .doc = "what it does", .values = "stand fall swim");
 }
 

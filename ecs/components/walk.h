@@ -90,7 +90,9 @@ LIMN_FIELDS(Walk) {
     LIMN_FIELD(arms, "from the arms of the clip, 0, to arms that swing, 1", "", 0, 1);
     LIMN_FIELD(response, "time constant with which the speed changes", "s", 0.02, 5);
     LIMN_FIELD(turn_speed, "fastest turn", "rad/s", 0.05, 20);
-    LIMN_FIELD(moves_root, "moves the Transform; false: walks where something else moves it");
+    LIMN_FIELD(
+        moves_root, "moves the Transform; false: walks where something else moves it, and runs "
+                    "where that is faster than people walk");
 }
 
 /// What a foot does. Its place is the point of the ground below the ankle of the flat foot; feet on
@@ -109,6 +111,7 @@ struct WalkFoot {
     float lift_rate = 0.0f;
     float strike = 0.0f;
     float height = 0.0f;
+    float flight = 0.75f;
 };
 
 LIMN_FIELDS(WalkFoot) {
@@ -125,6 +128,9 @@ LIMN_FIELDS(WalkFoot) {
     LIMN_FIELD(lift_rate, "its rate then", "rad/s");
     LIMN_FIELD(strike, "pitch with which it lands", "rad");
     LIMN_FIELD(height, "of its flight", "m");
+    LIMN_FIELD(
+        flight, "steps that its flight lasts: 0.75 in a walk; above 1, both feet fly at times", "",
+        0, 2);
 }
 
 /// State of a Walk, in the space of the Transform's parent.
@@ -134,12 +140,13 @@ struct WalkState {
     std::array<WalkFoot, 2> feet = {};  ///< left, right
     std::uint32_t flying = kNoFoot;     ///< the foot of the current step; kNoFoot: stands
     std::uint32_t placed = 0;           ///< 0: the feet have no prints yet
-    float step = 0.0f;                  ///< progress of a step, 0 .. 1; the foot flies up to 0.75
+    float step = 0.0f;                  ///< progress of a step, 0 .. 1
     float phase = 0.0f;
     float phase_rate = 0.0f;
     float activity = 0.0f;
     float activity_aim = 0.0f;
     float vigor = 0.0f;
+    float run = 0.0f;
     Vec3 root = {0, 0, 0};
     float heading = 0.0f;
     Vec3 pull = {0, 0, 0};
@@ -152,12 +159,13 @@ LIMN_FIELDS(WalkState) {
     LIMN_FIELD(feet, "left and right");
     LIMN_FIELD(flying, "0: the left foot's step; 1: the right one's; 2: stands", "", 0, 2);
     LIMN_FIELD(placed, "whether the feet have prints", "", 0, 1);
-    LIMN_FIELD(step, "progress of the step; the foot flies up to 0.75", "", 0, 1);
+    LIMN_FIELD(step, "progress of the step", "", 0, 1);
     LIMN_FIELD(phase, "of hips and arms: 0 to pi, the left foot's step, then the right's", "rad");
     LIMN_FIELD(phase_rate, "its rate", "rad/s");
     LIMN_FIELD(activity, "0 stands, 1 steps", "", 0, 1);
     LIMN_FIELD(activity_aim, "what it tends to", "", 0, 1);
     LIMN_FIELD(vigor, "speed relative to the comfortable one");
+    LIMN_FIELD(run, "0 walks, 1 runs", "", 0, 1);
     LIMN_FIELD(root, "where the character is", "m");
     LIMN_FIELD(heading, "about +y from +z", "rad");
     LIMN_FIELD(pull, "velocity that the velocity tends to", "m/s");

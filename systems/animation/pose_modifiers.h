@@ -3,6 +3,7 @@
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/ik.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/motor_pose.h"
 #include "ecs/components/pose_keys.h"
 #include "ecs/components/ragdoll.h"
 #include "ecs/components/twist_joints.h"
@@ -20,6 +21,7 @@ namespace limn {
 /// parameter of update_poses.
 struct PoseModifiers {
     Query<const Walk, const WalkState, const WalkBody> walks;
+    Query<const MotorPose, const MotorPoseState> motor_poses;
     Query<const FootPlant, const FootContacts> plants;
     Query<const IkRig, const IkGoals> rigs;
     Query<const LookAt, const Gaze> looks;
@@ -36,8 +38,9 @@ template <>
 struct SystemParam<PoseModifiers>
     : ParamGroup<
           PoseModifiers, Query<const Walk, const WalkState, const WalkBody>,
-          Query<const FootPlant, const FootContacts>, Query<const IkRig, const IkGoals>,
-          Query<const LookAt, const Gaze>, Query<const ReachGoal, const ReachState>,
+          Query<const MotorPose, const MotorPoseState>, Query<const FootPlant, const FootContacts>,
+          Query<const IkRig, const IkGoals>, Query<const LookAt, const Gaze>,
+          Query<const ReachGoal, const ReachState>,
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
           Query<const RagdollState>, Query<const PoseKeysState>,

@@ -11,6 +11,7 @@
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
 #include "systems/animation/twist_pose.h"
+#include "systems/animation/walk/motor_pose.h"
 #include "systems/animation/walk/walk_pose.h"
 
 #include <algorithm>
@@ -227,6 +228,11 @@ class Modifiers {
             apply_walk(
                 skeleton, *walk, *queries_.walks.find<const WalkState>(entity),
                 *queries_.walks.find<const WalkBody>(entity), pose);
+            if (const MotorPose* const motor = queries_.motor_poses.find<const MotorPose>(entity)) {
+                apply_motor_pose(
+                    skeleton, *motor, *queries_.motor_poses.find<const MotorPoseState>(entity),
+                    *queries_.walks.find<const WalkBody>(entity), pose);
+            }
         }
         if (const FootPlant* const plant = queries_.plants.find<const FootPlant>(entity)) {
             const FootContacts* const contacts = queries_.plants.find<const FootContacts>(entity);

@@ -184,7 +184,10 @@ void accelerate(
     if (stands || wanted != Vec3(0)) {
         state.velocity += shortened_to(wanted - level_part(state.velocity), rate * dt);
     }
-    if (intent.jump && (stands || state.air_time < kCoyote) && motor.jump > 0) {
+    const bool can_jump = intent.jump && (stands || state.air_time < kCoyote) && motor.jump > 0;
+    state.gather = can_jump && stands ? state.gather + dt : 0.0f;
+    if (can_jump && (!stands || state.gather > motor.take_off)) {
+        state.gather = 0;
         // Speeds change before positions, which half a step of gravity makes up for.
         state.velocity.y = std::sqrt(2 * kMotorGravity * motor.jump) - 0.5f * kMotorGravity * dt;
         state.mode = MotorMode::Fall;

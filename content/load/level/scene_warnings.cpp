@@ -77,6 +77,8 @@ constexpr Need kNeeds[] = {
     {"motion_graph", {"skeleton", "", ""}},
     {"motion_style", {"motion_graph", "", ""}},
     {"hero", {"character_motor", "", ""}},
+    {"motor_pose", {"character_motor", "", ""}},
+    {"motor_pose", {"walk", "", ""}},
     {"walk_route", {"move_intent", "", ""}},
     {"walk_route", {"walk", "", ""}},
     {"speed_view", {"camera", "", ""}},

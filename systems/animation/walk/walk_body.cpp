@@ -66,14 +66,14 @@ void find_arm(const SkeletonData& skeleton, const BodyJoints& body, bool is_left
     const auto at = [&](BodyPart left, BodyPart right) { return body[is_left ? left : right]; };
     arm.upper = at(BodyPart::LeftUpperArm, BodyPart::RightUpperArm);
     arm.fore = at(BodyPart::LeftForearm, BodyPart::RightForearm);
-    const std::uint16_t hand = at(BodyPart::LeftHand, BodyPart::RightHand);
-    if (std::max({arm.upper, arm.fore, hand}) == BodyJoints::kNoJoint) {
+    arm.hand = at(BodyPart::LeftHand, BodyPart::RightHand);
+    if (std::max({arm.upper, arm.fore, arm.hand}) == BodyJoints::kNoJoint) {
         arm = {};
         return;
     }
     const Vec3 elbow = rest_position(skeleton, arm.fore);
     arm.upper_way = normalize_or(elbow - rest_position(skeleton, arm.upper), {0, -1, 0});
-    arm.fore_way = normalize_or(rest_position(skeleton, hand) - elbow, arm.upper_way);
+    arm.fore_way = normalize_or(rest_position(skeleton, arm.hand) - elbow, arm.upper_way);
 }
 
 }  // namespace

@@ -27,15 +27,22 @@ struct WalkLeg {
 struct WalkArm {
     std::uint16_t upper = 0xffff;
     std::uint16_t fore = 0xffff;
+    std::uint16_t hand = 0xffff;
     Vec3 upper_way = {1, 0, 0};  ///< from shoulder to elbow, unit
     Vec3 fore_way = {1, 0, 0};   ///< from elbow to wrist, unit
 };
 
-/// Where the feet of a character and its hips have to be, in its space.
+/// Where the feet of a character and its hips have to be, in its space. A walk places the feet;
+/// what else it does may move the rest (motor_pose.h).
 struct WalkTargets {
     std::array<Vec3, 2> places = {};     ///< of the feet, as in WalkFoot [m]
     std::array<float, 2> headings = {};  ///< relative to rest [rad]
     std::array<float, 2> pitches = {};   ///< as in WalkFoot [rad]
+    std::array<float, 2> slack = {};     ///< by which feet do not pull the hips [leg lengths]
+    std::array<float, 2> limp = {};      ///< 1: toes follow the foot; 0: they stay level
+    Vec3 shift = {0, 0, 0};              ///< of the hips [m]
+    Quat turn = {1, 0, 0, 0};            ///< of the hips and all above
+    float lean = 0.0f;                   ///< more of the back, forward [rad]
     Vec3 forward = {0, 0, 1};            ///< unit, horizontal
     Vec3 left = {1, 0, 0};               ///< unit, horizontal
 };

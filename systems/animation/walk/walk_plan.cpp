@@ -2,6 +2,7 @@
 
 #include "ecs/base/foot_flight.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -19,13 +20,16 @@ constexpr float kLongestStride = 1.9f;    // [leg lengths]
 constexpr float kSlowestCycle = 1.4f;     // relative to that at the comfortable speed
 constexpr float kSidewaysStretch = 0.4f;  // of strides
 constexpr float kBackwardStretch = 0.65f;
-constexpr float kTurnCadence = 0.8f;   // speed that turns count as [leg lengths]
-constexpr float kMaxToeing = 0.8f;     // of a print against the root when it is made [rad]
-constexpr float kStanceAhead = 0.25f;  // of a cycle from landing until the root is above the foot
-constexpr float kReachAhead = 0.62f;   // farthest that a foot lands from the root [leg lengths]
-constexpr float kApart = 0.09f;        // least distance of the feet sideways [leg lengths]
-constexpr float kFlatAt = 0.6f;        // of a flight, where the foot is level
-constexpr float kHeelRise = 0.18f;     // of the way behind, where heels begin to rise
+constexpr float kTurnCadence = 0.8f;  // speed that turns count as [leg lengths]
+constexpr float kMaxToeing = 0.8f;    // of a print against the root when it is made [rad]
+constexpr float kStanceAhead = 0.4f;  // of the time on the ground until the root is above the foot
+constexpr float kReachAhead = 0.62f;  // farthest that a foot lands from the root [leg lengths]
+constexpr float kApart = 0.09f;       // least distance of the feet sideways [leg lengths]
+constexpr float kFlatAt = 0.6f;       // of a flight, where the foot is level
+constexpr float kHeelRise = 0.18f;    // of the way behind, where heels begin to rise
+constexpr float kRunNearer = 0.05f;   // runners land nearer to the point below them
+constexpr float kRunCycle = 2.65f;    // of a run, of sqrt(leg / gravity)
+constexpr float kRunQuicker = 0.2f;   // of it per speed, of sqrt(leg gravity)
 
 float smooth_step(float t) {
     return t * t * (3 - 2 * t);
@@ -82,6 +86,10 @@ float max_walk_speed(float leg) {
     return std::sqrt(kMaxFroude * kGravityPull * leg);
 }
 
+float run_share(float leg, float speed) {
+    return smooth_step(std::clamp((speed / max_walk_speed(leg) - 1.02f) / 0.38f, 0.0f, 1.0f));
+}
+
 float stride_stretch(const Vec3& velocity, float heading) {
     const float speed2 = glm::dot(velocity, velocity);
     const float along = glm::dot(velocity, heading_direction(heading));
@@ -109,6 +117,10 @@ WalkStride find_stride(const Walk& walk, float leg, const WalkMotion& motion) {
     const float turn = kTurnCadence * leg * std::abs(motion.turn);
     const float stretch = stride_stretch(motion.velocity, motion.heading);
     WalkStride stride = find_stride(walk, leg, std::sqrt(speed * speed + turn * turn), stretch);
+    const float fast = speed / std::sqrt(kGravityPull * leg);
+    const float run =
+        std::sqrt(leg / kGravityPull) * std::max(kRunCycle - kRunQuicker * fast, 0.6f * kRunCycle);
+    stride.duration = glm::mix(stride.duration, run, run_share(leg, speed));
     stride.length = speed * stride.duration;
     return stride;
 }
@@ -145,7 +157,10 @@ Footprint plan_footprint(
     const Walk& walk, const WalkSize& size, const WalkMotion& motion, std::uint32_t foot,
     float time_left, const Footprint& stance) {
     const float cycle = find_stride(walk, size.leg, motion).duration;
-    const float ahead = kStanceAhead * cycle * (0.35f + 0.65f * leg_weights(walk, foot).hip);
+    const float run = run_share(size.leg, glm::length(motion.velocity));
+    const float on_ground = (1 - 0.5f * flight_steps(run)) * cycle;
+    const float ahead = (kStanceAhead - kRunNearer * run) * on_ground
+                        * (0.35f + 0.65f * leg_weights(walk, foot).hip);
     const WalkForecast landing = forecast_root(motion, time_left);
     Footprint print = home_print(walk, size, foot, forecast_root(motion, time_left + ahead));
     const Vec3 way = print.place - landing.root;
@@ -159,6 +174,11 @@ Footprint plan_footprint(
     const float apart = glm::dot(print.place - stance.place, outward);
     print.place += std::max(kApart * size.leg - apart, 0.0f) * outward;
     return print;
+}
+
+float kick_height(float s) {
+    const float left = std::clamp(1 - s, 0.0f, 1.0f);
+    return square(std::sin(kPi * (1 - left * std::sqrt(left))));
 }
 
 Vec2 flight_point(const Walk& walk, float s) {

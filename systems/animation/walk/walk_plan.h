@@ -9,6 +9,7 @@ namespace limn {
 // Techniques: char.foot-flight, char.walk-control, char.walk-cycle
 
 inline constexpr float kFlightShare = 0.75f;  ///< of a step; then both feet are on the ground
+inline constexpr float kRunFlight = 1.45f;    ///< steps; the feet fly together for 0.45 of a step
 
 /// Where the feet of a body stand, in the space in which it walks.
 struct WalkSize {
@@ -22,6 +23,20 @@ struct WalkSize {
 /// Fastest walk of a leg of this length [m/s]: 2.2 m/s for 0.9 m. The centripetal acceleration of
 /// the hips above the foot on the ground is 0.55 of gravity then; people run from there on.
 [[nodiscard]] float max_walk_speed(float leg);
+
+/// From 0, a walk, up to 1 at 1.4 times the speed of the fastest walk.
+[[nodiscard]] float run_share(float leg, float speed);
+
+/// How long a foot flies in a walk that is a run by this share [steps].
+[[nodiscard]] inline float flight_steps(float run) {
+    return kFlightShare + run * (kRunFlight - kFlightShare);
+}
+
+/// Progress of the flight of a foot; >= 1: it is on the ground.
+[[nodiscard]] inline float flight_progress(const WalkState& state, std::uint32_t foot) {
+    const float steps = state.step + (foot == state.flying ? 0.0f : 1.0f);
+    return state.flying == WalkState::kNoFoot ? 1.0f : steps / state.feet[foot].flight;
+}
 
 /// A cycle, two steps, at a speed.
 struct WalkStride {
@@ -51,7 +66,7 @@ struct WalkMotion {
     float response = 0.0f;      ///< time constant of both [s]; 0: the velocity stays
 };
 
-/// The cycle for this motion; turns take steps, too.
+/// The cycle for this motion; turns take steps, too. Runs take steps at a nearly constant rate.
 [[nodiscard]] WalkStride find_stride(const Walk& walk, float leg, const WalkMotion& motion);
 
 /// Root and heading after `time` [s], if nothing else is wanted meanwhile; in closed form.
@@ -77,6 +92,9 @@ home_print(const Walk& walk, const WalkSize& size, std::uint32_t foot, const Wal
 [[nodiscard]] Footprint plan_footprint(
     const Walk& walk, const WalkSize& size, const WalkMotion& motion, std::uint32_t foot,
     float time_left, const Footprint& stance);
+
+/// Height of the foot of a runner, 0 to 1: highest early, while the heel is behind the body.
+[[nodiscard]] float kick_height(float s);
 
 /// Where a flying foot is at `s`, 0 to 1: forward, 0 to 1 of its step, and height, 0 to 1. Eased by
 /// 3 s^2 - 2 s^3, so that the foot lands without speed, at the height of foot_flight.h; or by the

@@ -6,6 +6,7 @@
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/walk/walk_plan.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -26,6 +27,13 @@ constexpr float kArmAside = 0.1f;         // [rad]
 constexpr float kElbow = 0.28f;           // bend of elbows [rad]
 constexpr float kElbowSwing = 0.22f;      // more of it forward [rad]
 constexpr float kHeadLevel = 0.8f;        // share of the trunk's turns that the head makes back
+// Of runs:
+constexpr float kRunSink = 0.08f;      // of the hips [leg lengths]
+constexpr float kRunBob = 0.03f;       // amplitude of the hips, highest in flight [leg lengths]
+constexpr float kRunLean = 0.2f;       // of the back [rad]
+constexpr float kRunSoftness = 0.05f;  // of the highest hips [leg lengths]
+constexpr float kRunElbow = 1.45f;     // bend of elbows [rad]
+constexpr float kRunArm = 0.35f;       // more amplitude of the arms [rad]
 
 /// Periodic parts of a pose [rad], [m].
 struct BodySwing {
@@ -36,6 +44,7 @@ struct BodySwing {
     float arm = 0.0f;   ///< of the left arm, forward
     float lean = 0.0f;  ///< of the back, forward
     float over = 0.0f;  ///< of the chest, to the left
+    float run = 0.0f;   ///< 0 walks, 1 runs
 };
 
 float weakness(const LegWeights& weights) {
@@ -55,20 +64,25 @@ BodySwing find_swing(const Walk& walk, const WalkState& state, float leg) {
     // Extremes: weight above the standing foot in the middle of a flight, at 0.375 of a step; legs
     // far apart when the foot has landed.
     const float over = -std::sin(phase + 0.125f * kPi);  // 1: above the left foot
-    const float apart = std::sin(phase - 0.35f * kPi);   // 1: the left leg is ahead
+    const float run = active * state.run;
+    const float late = glm::mix(0.35f, 0.6f, run);
+    const float apart = std::sin(phase - late * kPi);  // 1: the left leg is ahead
     const float drop = -std::sin(phase + 0.3f * kPi);
     const float weak = over > 0 ? weakness(walk.left) : weakness(walk.right);
     // Slow steps need the weight above the foot on the ground.
-    const float sway = walk.sway * (1.8f - 0.8f * std::min(vigor, 1.0f));
+    const float sway = walk.sway * (1.8f - 0.8f * std::min(vigor, 1.0f)) * (1 - 0.7f * run);
     swing.side = leg * active * over * (sway + 0.03f * weak * std::abs(over));
     swing.over = active * over * (0.02f + 0.16f * weak * std::abs(over) + 0.03f * walk.tiredness);
     swing.yaw = -walk.hip_yaw * vigor * apart;
-    swing.arm = -walk.arm_swing * vigor * apart;
+    swing.arm = -(walk.arm_swing * vigor + run * kRunArm) * apart;
+    swing.run = run;
     const float stiff = drop < 0 ? 1 - walk.left.knee : 1 - walk.right.knee;
     swing.roll = active * drop * (walk.hip_roll - 0.16f * stiff * std::abs(drop));
     swing.up =
         leg * active * (walk.bob * std::cos(2 * phase - 0.75f * kPi) - 0.02f * weak * over * over);
-    swing.lean = walk.stoop + state.lean + 0.03f * vigor;
+    // Both feet fly in the first 0.45 of a step.
+    swing.up += run * leg * (kRunBob * std::cos(2 * phase - 0.45f * kPi) - kRunSink);
+    swing.lean = walk.stoop + state.lean + 0.03f * vigor + run * kRunLean;
     return swing;
 }
 
@@ -85,12 +99,13 @@ Quat turn_by(const WalkAxes& axes, float yaw, float roll, float pitch) {
 }
 
 /// How high the hips may be for a leg to reach its ankle.
-float highest_hips(const WalkLeg& leg, const Vec3& hips, const Quat& turn, const Vec3& ankle) {
+float highest_hips(
+    const WalkLeg& leg, const Vec3& hips, const Quat& turn, const Vec3& ankle, float slack) {
     const Vec3 socket = turn * leg.socket;
     const Vec3 way = hips + socket - ankle;
     const float reach2 = square(kLongest * leg.length);
     const float rest = std::max(reach2 - way.x * way.x - way.z * way.z, 0.09f * reach2);
-    return ankle.y + std::sqrt(rest) - socket.y;
+    return ankle.y + std::sqrt(rest) - socket.y + slack * leg.length;
 }
 
 void place_hips(
@@ -133,7 +148,7 @@ void bend_back(
 
 void swing_arm(
     const SkeletonData& skeleton, const WalkBody& body, const WalkAxes& axes, std::size_t side,
-    float angle, float amplitude, float weight, LocalPose& pose) {
+    float angle, float amplitude, float run, float weight, LocalPose& pose) {
     const WalkArm& arm = body.arms[side];
     if (arm.upper == kNoPart || !(weight > 0)) {
         return;
@@ -152,7 +167,9 @@ void swing_arm(
                   + sign * std::sin(aside) * axes.left);
     };
     const Vec3 upper = hanging(angle, kArmAside);
-    const float bend = kElbow + kElbowSwing * (amplitude > 1e-4f ? angle / amplitude : 0.0f);
+    const float most = amplitude + run * kRunArm;
+    const float bend =
+        glm::mix(kElbow, kRunElbow, run) + kElbowSwing * (most > 1e-4f ? angle / most : 0.0f);
     const Vec3 fore = hanging(angle + bend, 0.4f * kArmAside);
     const Quat upper_turn = rotation_between(arm.upper_way, upper);
     const Quat fore_turn = rotation_between(upper_turn * arm.fore_way, fore) * upper_turn;
@@ -208,28 +225,32 @@ void apply_walk(
     const WalkTargets& targets = body.targets;
     const WalkAxes axes = {targets.left, Vec3(0, 1, 0), targets.forward};
     const float length = leg_length(body);
-    const BodySwing swing = find_swing(style, state, length);
-    const Quat hips = turn_by(axes, swing.yaw, swing.roll, 0.25f * swing.lean);
+    BodySwing swing = find_swing(style, state, length);
+    swing.lean += targets.lean;
+    const Quat hips = targets.turn * turn_by(axes, swing.yaw, swing.roll, 0.25f * swing.lean);
     std::array<FootPlace, 2> feet;
     for (std::size_t i = 0; i < 2; ++i) {
         feet[i] = find_foot_place(
             body.legs[i], targets.places[i], targets.headings[i], targets.pitches[i]);
+        feet[i].toes = slerp(feet[i].toes, feet[i].rotation, targets.limp[i]);
     }
-    Vec3 place = body.hips_place + swing.side * axes.left;
+    Vec3 place = body.hips_place + swing.side * axes.left + targets.shift;
     place.y = smooth_min(
-        body.hips_place.y * (1 - style.knee_bend) + swing.up,
-        highest_hips(body.legs[0], place, hips, feet[0].ankle),
-        highest_hips(body.legs[1], place, hips, feet[1].ankle), kHipsSoftness * length);
+        body.hips_place.y * (1 - style.knee_bend) + swing.up + targets.shift.y,
+        highest_hips(body.legs[0], place, hips, feet[0].ankle, targets.slack[0]),
+        highest_hips(body.legs[1], place, hips, feet[1].ankle, targets.slack[1]),
+        glm::mix(kHipsSoftness, kRunSoftness, swing.run) * length);
     const std::uint16_t head = body.head != kNoPart ? body.head : body.hips;
     const Quat head_before = find_place(skeleton, pose, head).rotation;
     place_hips(skeleton, body, place, hips, pose);
     const Quat level = rotation_about(axes.left, 0.5f * swing.lean + 0.3f * style.tiredness);
     bend_back(skeleton, body, axes, swing, level * head_before, pose);
+    const WalkAxes knees = {axes.left, targets.turn * axes.up, targets.turn * axes.forward};
     for (std::size_t i = 0; i < 2; ++i) {
         swing_arm(
-            skeleton, body, axes, i, i == 0 ? swing.arm : -swing.arm, style.arm_swing, style.arms,
-            pose);
-        place_leg(skeleton, body.legs[i], feet[i], targets.headings[i], axes, pose);
+            skeleton, body, axes, i, i == 0 ? swing.arm : -swing.arm, style.arm_swing, swing.run,
+            style.arms, pose);
+        place_leg(skeleton, body.legs[i], feet[i], targets.headings[i], knees, pose);
     }
 }
 

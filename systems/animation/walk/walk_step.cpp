@@ -2,6 +2,7 @@
 
 #include "ecs/base/rotation.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -34,6 +35,10 @@ constexpr float kHurry = 8.0f;                // gain of the rate of steps [1/le
 constexpr float kLeanPerPull = 0.04f;         // [rad/(m/s^2)]
 constexpr float kClimbResponse = 0.25f;       // of the root on slopes and stairs [s]
 constexpr float kRootJump = 0.6f;             // of a root that is placed elsewhere [leg lengths]
+constexpr float kRollTime = 0.25f;            // of a foot that has landed in a run [steps]
+constexpr float kKick = 0.36f;                // of heels, in a run at twice a walk [leg lengths]
+constexpr float kFlightSlack = 0.3f;          // by which flying feet do not pull [leg lengths]
+constexpr float kKickPitch = 0.7f;            // of a foot while its heel is high [rad]
 
 float follow_share(float step, float response) {
     return 1 - std::exp(-step / response);
@@ -92,13 +97,15 @@ struct WalkStep {
         return step_duration(walk, foot, stride().duration);
     }
     [[nodiscard]] float time_left(std::uint32_t foot) const {
-        const float flight = std::max(kFlightShare - state.step, 0.0f);
-        return flight * duration_of(foot);
+        const float steps = state.step + (foot == state.flying ? 0.0f : 1.0f);
+        return std::max(state.feet[foot].flight - steps, 0.0f) * duration_of(foot);
     }
     [[nodiscard]] float rolling(std::uint32_t foot) const {
         const WalkFoot& place = state.feet[foot];
         const Vec3 ahead = heading_direction(place.to_heading);
-        const float reference = std::hypot(kBehind * stride().length, kMinBehind * size.leg);
+        const float on_ground = (2 - place.flight) / (2 - kFlightShare);
+        const float reference =
+            std::hypot(kBehind * on_ground * stride().length, kMinBehind * size.leg);
         return toe_off_pitch(walk, foot, glm::dot(motion.root - place.to, ahead) / reference);
     }
 };
@@ -121,7 +128,8 @@ std::uint32_t next_foot(const WalkStep& step, std::uint32_t last) {
         return goes || step.is_away(0) || step.is_away(1) ? first_foot(step) : last;
     }
     const std::uint32_t other = 1 - last;
-    if (goes || step.is_away(other)) {
+    const bool flies = step.state.feet[last].flight > 1;
+    if (goes || flies || step.is_away(other)) {
         return other;
     }
     return step.is_away(last) ? last : WalkState::kNoFoot;
@@ -144,6 +152,7 @@ void lift_foot(const WalkStep& step, std::uint32_t which) {
     WalkFoot& foot = state.feet[which];
     const float pitch = step.rolling(which);
     state.flying = which;
+    foot.flight = flight_steps(state.run);
     // When it left the ground; since then a part of a substep has passed.
     const float since = state.step * step.duration_of(which);
     foot.lift_rate = (pitch - foot.pitch) / step.dt;
@@ -165,7 +174,10 @@ void lift_foot(const WalkStep& step, std::uint32_t which) {
         std::clamp(glm::distance(foot.to, foot.from) / (1.2f * step.size.leg), 0.f, 1.f);
     foot.height = step.walk.step_height * (0.25f + 0.75f * weights.knee)
                   * (0.5f + 0.5f * std::min(std::max(far, usual), 1.0f));
-    foot.strike = step.walk.heel_strike * weights.ankle * usual * std::clamp(forward, 0.0f, 1.0f);
+    const float fast = step.speed() / (2 * max_walk_speed(step.size.leg));
+    foot.height += state.run * kKick * step.size.leg * std::clamp(fast, 0.5f, 1.2f);
+    foot.strike = step.walk.heel_strike * weights.ankle * usual * std::clamp(forward, 0.0f, 1.0f)
+                  * (1 - 0.7f * state.run);
 }
 
 /// The print in flight follows the plan like a critically damped spring, and stops before the
@@ -192,10 +204,12 @@ void place_flying_foot(const WalkStep& step, std::uint32_t which, float s) {
                          * glm::cross(Vec3(0, 1, 0), heading_direction(step.motion.heading));
     const float around = stiff * kSwingAround * step.size.leg * square(std::sin(kPi * s));
     foot.place = glm::mix(foot.from, foot.to, flight.x) + around * outward;
-    foot.place.y += foot.height * flight.y;
+    const float run = (foot.flight - kFlightShare) / (kRunFlight - kFlightShare);
+    foot.place.y += foot.height * glm::mix(flight.y, kick_height(s), run);
     foot.heading = glm::mix(foot.from_heading, foot.to_heading, flight.x);
-    const float duration = kFlightShare * step.duration_of(which);
-    foot.pitch = flight_pitch(foot.lift_pitch, foot.lift_rate, foot.strike, s, duration);
+    const float duration = foot.flight * step.duration_of(which);
+    foot.pitch = flight_pitch(foot.lift_pitch, foot.lift_rate, foot.strike, s, duration)
+                 - run * kKickPitch * kick_height(s);
 }
 
 void place_standing_foot(const WalkStep& step, std::uint32_t which) {
@@ -203,9 +217,13 @@ void place_standing_foot(const WalkStep& step, std::uint32_t which) {
     foot.place = foot.to;
     foot.heading = foot.to_heading;
     foot.pitch = step.rolling(which);
-    if (which == step.state.flying) {  // it landed in this step
-        const float rolled = (step.state.step - kFlightShare) / (1 - kFlightShare);
-        foot.pitch += landing_pitch(foot.strike - foot.pitch, rolled);
+    if (step.state.flying == WalkState::kNoFoot) {
+        return;
+    }
+    const float since = step.state.step + (which == step.state.flying ? 0.0f : 1.0f) - foot.flight;
+    const float roll_time = foot.flight < 1 ? 1 - foot.flight : kRollTime;
+    if (since < roll_time) {  // it has just landed
+        foot.pitch += landing_pitch(foot.strike - foot.pitch, since / roll_time);
     }
 }
 
@@ -233,8 +251,8 @@ void step_feet(const WalkStep& step) {
         }
     }
     for (std::uint32_t foot = 0; foot < 2; ++foot) {
-        const float s = state.step / kFlightShare;
-        if (foot == state.flying && s < 1) {
+        const float s = flight_progress(state, foot);
+        if (s < 1) {
             aim_print(step, state.feet[foot], foot, s);
             place_flying_foot(step, foot, s);
         } else {
@@ -299,6 +317,7 @@ void step_sway(const WalkStep& step) {
     state.activity_aim += share * ((steps ? 1.0f : 0.0f) - state.activity_aim);
     state.activity += share * (state.activity_aim - state.activity);
     state.vigor += share * (step.speed() / step.walk.speed - state.vigor);
+    state.run += share * (run_share(step.size.leg, step.speed()) - state.run);
     float rate = 0;
     if (steps) {
         rate = kPi / step.duration_of(state.flying);
@@ -330,6 +349,14 @@ void level_prints(float height, WalkState& state) {
         foot.from.y = height;
         foot.to.y = height;
     }
+}
+
+/// Of a foot in a run: 1 in the middle of its flight, 0 on the ground.
+float free_share(const WalkState& state, std::uint32_t foot) {
+    const float run = (state.feet[foot].flight - kFlightShare) / (kRunFlight - kFlightShare);
+    const float s = std::clamp(flight_progress(state, foot), 0.0f, 1.0f);
+    const float inside = std::min(5 * s * (1 - s), 1.0f);
+    return run * inside * inside * (3 - 2 * inside);
 }
 
 bool is_usable(const Transform& transform) {
@@ -421,11 +448,13 @@ find_walk_targets(const WalkBody& body, const WalkState& state, const Transform&
     const Quat back = glm::conjugate(transform.rotation);
     const float inverse = 1 / uniform_scale(transform);
     const float heading = heading_of(body, transform.rotation);
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::uint32_t i = 0; i < 2; ++i) {
         const WalkFoot& foot = state.feet[i];
         targets.places[i] = inverse * (back * (foot.place - transform.position));
         targets.headings[i] = wrap_angle(foot.heading - heading);
         targets.pitches[i] = foot.pitch;
+        targets.slack[i] = kFlightSlack * free_share(state, i);
+        targets.limp[i] = free_share(state, i);
     }
     targets.forward = heading_direction(body.heading);
     targets.left = glm::cross(Vec3(0, 1, 0), targets.forward);

@@ -62,14 +62,20 @@ void update_walk_routes(
 
 void update_walks(
     Query<
-        const Walk, Optional<const MoveIntent>, Optional<const FootContacts>, WalkState, WalkBody,
-        Transform>
+        const Walk, Optional<const MoveIntent>, Optional<const FootContacts>,
+        Optional<const MotorState>, Optional<const MotorPoseState>, WalkState, WalkBody, Transform>
         walkers,
     OptionalRes<const FrameTime> time) {
     const float step = time ? time->step : 0.0f;
     walkers.par_each([step](
                          const Walk& walk, const MoveIntent* intent, const FootContacts* contacts,
+                         const MotorState* motor, const MotorPoseState* motor_pose,
                          WalkState& state, WalkBody& body, Transform& transform) {
+        const bool is_off = motor != nullptr && motor_pose != nullptr && state.placed != 0
+                            && (motor->mode != MotorMode::Stand || motor_pose->off_ground != 0);
+        if (is_off) {
+            return;
+        }
         std::optional<float> lift;
         if (contacts != nullptr) {
             lift = uniform_scale(transform) * 0.5f * (contacts->lifts[0] + contacts->lifts[1]);

@@ -3,6 +3,8 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/foot_plant.h"
+#include "ecs/components/motor.h"
+#include "ecs/components/motor_pose.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
@@ -28,11 +30,12 @@ void update_walk_routes(
         walkers,
     Res<const FrameTime> time);
 
-/// After everything else that moves characters; before update_foot_contacts and update_poses.
+/// After everything else that moves characters; before update_foot_contacts and update_poses. Those
+/// with a MotorPose do not step while they fall or swim.
 void update_walks(
     Query<
-        const Walk, Optional<const MoveIntent>, Optional<const FootContacts>, WalkState, WalkBody,
-        Transform>
+        const Walk, Optional<const MoveIntent>, Optional<const FootContacts>,
+        Optional<const MotorState>, Optional<const MotorPoseState>, WalkState, WalkBody, Transform>
         walkers,
     OptionalRes<const FrameTime> time);
 

@@ -1,0 +1,357 @@
+// How a character looks that a motor moves: it runs, jumps, lands, swims, pushes and carries.
+
+#include "ecs/base/jobs.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/foot_plant.h"
+#include "ecs/snapshot.h"
+#include "systems/animation/walk/motor_pose.h"
+#include "tests/near.h"
+#include "tests/systems/motor_fixture.h"
+#include "tests/systems/walk_fixture.h"
+#include "tests/technique.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace limn::motor_pose_test {
+
+using namespace limn::test;
+
+namespace {
+
+constexpr float kFrame = 1.0f / 60;
+constexpr CharacterMotor kMotor = {.take_off = 0.1f};
+
+/// A person on a plane, moved by a motor.
+struct PoseStage : MotorStage {
+    explicit PoseStage(std::vector<MeshData> meshes = {}, const Transform& at = {})
+        : MotorStage(std::move(meshes), at, kMotor) {
+        world.resource<Assets>().skeletons.push_back(make_stick_person());
+        Walk walk;
+        walk.moves_root = false;
+        world.add(person, Skeleton{{0}});
+        world.add(person, walk);
+        world.add(person, MotorPose{});
+        step(3);
+    }
+    [[nodiscard]] const MotorPoseState& motion() { return world.get<const MotorPoseState>(person); }
+    [[nodiscard]] const WalkState& walk() { return world.get<const WalkState>(person); }
+    [[nodiscard]] const WalkBody& body() { return world.get<const WalkBody>(person); }
+    [[nodiscard]] Vec3 joint(std::uint16_t joint) {
+        return transform_point(
+            world.get<const WorldTransform>(person).world,
+            transform_point(world.get<const Pose>(person).joints[joint], Vec3(0)));
+    }
+    [[nodiscard]] float hips_height() { return joint(body().hips).y - feet().y; }
+    void jump() { world.get<MoveIntent>(person).jump = true; }
+    /// Until it stands after it has not stood; false: it never did.
+    bool run_to_landing() {
+        for (int i = 0; i < 600; ++i) {
+            const bool was_off = motion().off_ground != 0;
+            step();
+            if (was_off && motion().off_ground == 0) {
+                return true;
+            }
+        }
+        return false;
+    }
+};
+
+/// Deepest that the hips sink after a fall from this height, and how low they are 1.5 s later.
+std::array<float, 2> sink_after_fall(float height) {
+    PoseStage stage({}, {.position = {0, height, 0}});
+    REQUIRE(stage.run_to_landing());
+    float deepest = 0;
+    for (int i = 0; i < 90; ++i) {
+        deepest = std::max(deepest, 0.95f - stage.hips_height());
+        stage.step();
+    }
+    return {deepest, 0.95f - stage.hips_height()};
+}
+
+/// Runs at `speed` and checks each frame.
+template <typename Check>
+void run_straight(float speed, int frames, Check&& check) {
+    Walk walk;
+    walk.moves_root = false;
+    WalkTrial trial(walk);
+    float now = 0;
+    for (int i = 0; i < frames; ++i) {
+        now = std::min(now + 8 * kFrame, speed);
+        trial.transform.position.z += now * kFrame;
+        trial.step(kFrame);
+        check(trial, i);
+    }
+}
+
+bool flies(const WalkTrial& trial, std::uint32_t foot) {
+    return flight_progress(trial.state, foot) < 1;
+}
+
+}  // namespace
+
+TEST_CASE("run: above the speed of walks both feet fly at times, below never") {
+    for (const float speed : {1.4f, 2.0f, 4.2f}) {
+        int both = 0;
+        int none = 0;
+        run_straight(speed, 300, [&](const WalkTrial& trial, int i) {
+            both += i > 120 && flies(trial, 0) && flies(trial, 1) ? 1 : 0;
+            none += i > 120 && !flies(trial, 0) && !flies(trial, 1) ? 1 : 0;
+        });
+        CAPTURE(speed);
+        CHECK((both > 30) == (speed > 3));
+        CHECK((none > 15) == (speed < 3));
+    }
+}
+
+TEST_CASE(
+    "run: feet on the ground do not slide, none is below it, and knees bend forward"
+    * technique("char.walk-cycle")) {
+    float slide = 0;
+    float lowest = 0;
+    float least_bend = 1;
+    std::array<Vec3, 2> toes{};
+    std::array<int, 2> planted{};
+    run_straight(4.2f, 400, [&](const WalkTrial& trial, int frame) {
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const bool rolls = trial.state.feet[i].pitch > 0;  // about its heel
+            planted[i] = flies(trial, i) || rolls ? 0 : planted[i] + 1;
+            toes[i] = planted[i] == 1 ? trial.toe(i) : toes[i];
+            const bool is_steady = frame > 120;  // strides catch up while it gains speed
+            const float moved = glm::distance(toes[i], trial.toe(i));
+            slide = std::max(slide, is_steady && planted[i] > 0 ? moved : 0.0f);
+            lowest = std::min(lowest, trial.clearance(i));
+            least_bend = std::min(least_bend, trial.knee(i));
+        }
+    });
+    CHECK(slide < 0.002f);
+    CHECK(lowest > -0.002f);
+    CHECK(least_bend > -1e-4f);
+}
+
+TEST_CASE("run: hips rise and fall twice a cycle, and joints have no jumps of speed") {
+    std::vector<float> heights;
+    run_straight(4.2f, 360, [&](const WalkTrial& trial, int) {
+        heights.push_back(trial.place(trial.body.hips).position.y);
+    });
+    heights.erase(heights.begin(), heights.begin() + 150);
+    float fastest_change = 0;
+    float sum = 0;
+    for (std::size_t i = 2; i < heights.size(); ++i) {
+        const float change = heights[i] - 2 * heights[i - 1] + heights[i - 2];
+        fastest_change = std::max(fastest_change, std::abs(change) / (kFrame * kFrame));
+        sum += heights[i];
+    }
+    const float mean = sum / static_cast<float>(heights.size() - 2);
+    int rises = 0;
+    for (std::size_t i = 1; i < heights.size(); ++i) {
+        rises += heights[i - 1] < mean && heights[i] >= mean ? 1 : 0;
+    }
+    CHECK(fastest_change < 60);  // m/s^2
+    CHECK(rises >= 9);
+    CHECK(rises <= 11);
+}
+
+TEST_CASE("motor pose: knees give way to landings by as much as they are hard, and recover") {
+    float last = 0;
+    for (const float height : {0.3f, 0.8f, 1.8f, 4.0f, 12.0f}) {
+        const auto [deepest, later] = sink_after_fall(height);
+        CAPTURE(height);
+        CHECK(deepest > last + 0.01f);
+        CHECK(deepest < 0.6f);
+        CHECK(later < 0.03f);
+        last = deepest;
+    }
+}
+
+TEST_CASE("motor pose: crouches before it jumps, rises, and lands on both feet") {
+    PoseStage stage;
+    const float stand = stage.hips_height();
+    stage.jump();
+    float crouch = stand;
+    int waited = 0;
+    while (stage.state().mode == MotorMode::Stand && waited < 30) {
+        stage.step();
+        crouch = std::min(crouch, stage.hips_height());
+        ++waited;
+    }
+    CHECK(waited >= 6);
+    CHECK(waited <= 8);
+    CHECK(crouch < stand - 0.08f);
+    float highest = 0;
+    while (stage.motion().off_ground != 0) {
+        highest = std::max(highest, stage.joint(stage.body().legs[0].foot).y);
+        stage.step();
+    }
+    CHECK(highest > 0.9f);
+    CHECK(std::abs(stage.walk().feet[0].place.y) < 1e-4f);
+    CHECK(std::abs(stage.walk().feet[1].place.y) < 1e-4f);
+}
+
+TEST_CASE("motor pose: feet stay where they have landed until they step") {
+    PoseStage stage;
+    stage.go({0, 0, 1.2f});
+    stage.step(60);
+    stage.jump();
+    stage.step(10);
+    stage.go(Vec3(0));
+    REQUIRE(stage.run_to_landing());
+    std::array<Vec3, 2> prints = {stage.walk().feet[0].place, stage.walk().feet[1].place};
+    float slide = 0;
+    for (int i = 0; i < 60; ++i) {
+        stage.step();
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            const bool steps = flight_progress(stage.walk(), k) < 1;
+            prints[k] = steps ? stage.walk().feet[k].place : prints[k];
+            if (!steps) {
+                const Vec3 off = stage.walk().feet[k].place - prints[k];
+                slide = std::max(slide, glm::length(Vec3(off.x, 0, off.z)));
+                prints[k] = stage.walk().feet[k].place;
+            }
+        }
+    }
+    CHECK(slide < 0.002f);
+}
+
+TEST_CASE("motor pose: joints do not jump at take-off, in the air and at the landing") {
+    PoseStage stage;
+    stage.go({0, 0, 3.5f});
+    stage.step(90);
+    stage.jump();
+    const std::array<std::uint16_t, 7> joints = {
+        stage.body().hips,         stage.body().head,         stage.body().legs[0].foot,
+        stage.body().legs[1].foot, stage.body().arms[0].hand, stage.body().arms[1].hand,
+        stage.body().legs[0].shin};
+    std::array<Vec3, 7> last{};
+    float fastest = 0;
+    for (int i = 0; i < 120; ++i) {
+        for (std::size_t k = 0; k < joints.size(); ++k) {
+            const Vec3 now = stage.joint(joints[k]) - stage.feet();
+            const float speed = i > 0 ? glm::distance(now, last[k]) / kFrame : 0.0f;
+            fastest = std::max(fastest, speed);
+            last[k] = now;
+        }
+        stage.step();
+    }
+    CHECK(fastest < 14);  // m/s relative to the root
+}
+
+TEST_CASE("motor pose: hands hold what is carried, and lean on what is pushed") {
+    PoseStage stage;
+    const Entity ball =
+        stage.world.create(Transform{.position = {0, 0.3f, 0.8f}}, LooseBody{.radius = 0.2f});
+    stage.step(2);
+    stage.world.get<LooseState>(ball).carrier = stage.person;
+    stage.step(60);
+    const Vec3 center = stage.world.get<const Transform>(ball).position;
+    for (const WalkArm& arm : stage.body().arms) {
+        const float distance = glm::distance(stage.joint(arm.hand), center);
+        CHECK(distance > 0.15f);
+        CHECK(distance < 0.32f);
+    }
+    stage.world.get<LooseState>(ball).carrier = Entity{};
+    stage.step(1);
+    CHECK(stage.motion().holds == 0);
+    stage.step(8);
+    CHECK(stage.motion().fling.value > 0.5f);
+
+    PoseStage pusher;
+    pusher.world.create(
+        Transform{.position = {0, 0.5f, 1.2f}},
+        LooseBody{.radius = 0.5f, .mass = 40, .bounce = 0, .rolls = false});
+    pusher.go({0, 0, 0.8f});
+    pusher.step(90);
+    CHECK(pusher.motion().push.value > 0.9f);
+    CHECK(pusher.joint(pusher.body().arms[0].hand).z > pusher.feet().z + 0.1f);
+    pusher.go(Vec3(0));
+    pusher.step(60);
+    CHECK(pusher.motion().push.value < 0.05f);
+}
+
+TEST_CASE("motor pose: lies in the water while it swims, and stands in it upright") {
+    PoseStage stage;
+    constexpr float kSurface = 2.5f;
+    stage.world.create(Transform{.position = {0, kSurface, 0}}, Water{.size = {40, 40}});
+    stage.step(240);
+    REQUIRE(stage.state().mode == MotorMode::Swim);
+    const auto trunk = [&] {
+        return stage.joint(stage.body().head) - stage.joint(stage.body().hips);
+    };
+    CHECK(trunk().y > 0.4f);
+    stage.go({0, 0, 1.1f});
+    stage.step(240);
+    CHECK(trunk().z > 0.4f);
+    CHECK(trunk().y > 0.05f);
+    CHECK(stage.joint(stage.body().head).y > kSurface - 0.25f);  // breathes
+    CHECK(stage.joint(stage.body().legs[0].foot).z < stage.joint(stage.body().hips).z - 0.3f);
+}
+
+TEST_CASE("motor pose: a snapshot in mid-jump continues with the same bits, on any threads") {
+    std::vector<std::uint64_t> expected;
+    for (const int threads : {1, 2, 3, 7}) {
+        set_thread_count(threads);
+        PoseStage stage;
+        stage.go({0.5f, 0, 3});
+        stage.step(60);
+        stage.jump();
+        stage.step(25);
+        REQUIRE(stage.motion().off_ground == 1);
+        const Result<std::vector<std::byte>> saved = save_snapshot(stage.world);
+        REQUIRE(saved.ok());
+        PoseStage again;
+        REQUIRE(restore_snapshot(again.world, saved.value()).ok());
+        std::vector<std::uint64_t> hashes;
+        for (int i = 0; i < 90; ++i) {
+            stage.step();
+            again.step();
+            hashes.push_back(state_hash(stage.world));
+            REQUIRE(state_hash(again.world) == hashes.back());
+        }
+        expected = expected.empty() ? hashes : expected;
+        CHECK(hashes == expected);
+    }
+    set_thread_count(0);
+}
+
+TEST_CASE("motor pose: long steps, none, and numbers that are not finite") {
+    const SkeletonData person = make_stick_person();
+    WalkBody body = find_walk_body(person);
+    for (const float step : {0.0f, 1e-6f, 1.0f, 30.0f}) {
+        WalkState walk;
+        MotorPoseState state;
+        Transform transform;
+        place_walk({}, body, transform, walk);
+        for (int i = 0; i < 20; ++i) {
+            MotorPoseInput input;
+            input.motor.mode = i % 3 == 0   ? MotorMode::Stand
+                               : i % 3 == 1 ? MotorMode::Fall
+                                            : MotorMode::Swim;
+            input.velocity = {0, i % 2 == 0 ? -30.0f : 5.0f, i == 7 ? NAN : 4.0f};
+            step_motor_pose({}, input, body, transform, step, state, walk);
+            body.targets = find_walk_targets(body, walk, transform);
+            add_motor_targets({}, state, body);
+            LocalPose pose = person.rest;
+            apply_walk(person, {}, walk, body, pose);
+            apply_motor_pose(person, {}, state, body, pose);
+            for (std::size_t j = 0; j < pose.size(); ++j) {
+                REQUIRE(is_finite(pose.translations[j]));
+                REQUIRE(std::isfinite(glm::length(pose.rotations[j])));
+            }
+        }
+    }
+    WalkBody legless;
+    WalkState walk;
+    MotorPoseState state;
+    step_motor_pose({}, {}, legless, {}, kFrame, state, walk);
+    LocalPose pose = person.rest;
+    apply_motor_pose(person, {}, state, legless, pose);
+    CHECK(pose.rotations == person.rest.rotations);
+}
+
+}  // namespace limn::motor_pose_test
