@@ -109,6 +109,8 @@ float relief_fall(vec3 direction_ws, vec3 normal) {
 #endif
 }
 
+const float kLevelBlend = 0.3;  // of the distance between two mip levels
+
 void find_relief_lod() {
     vec2 size = vec2(textureSize(material_maps[RELIEF_MAP], 0).xy);
     vec2 dx = map_gradient(kReliefSlot, dFdx(uv)) * size;
@@ -117,7 +119,9 @@ void find_relief_lod() {
 #ifdef RELIEF_CAST
     level -= 1.0;  // nearer to what the shadow map has, or the difference would shadow itself
 #endif
-    relief_lod = max(level, 0.0);
+    // Mostly whole, where each step of a search filters one level and not two; between them a narrow blend.
+    float whole = floor(level);
+    relief_lod = max(whole + clamp((level - whole - 0.5) / kLevelBlend + 0.5, 0.0, 1.0), 0.0);
 }
 #ifdef RELIEF_BOX
 #include "lib/relief_box.glsl"
