@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kShortestBone = 1e-6f;  ///< [m]
 
-std::size_t joint_named(const SkeletonData& skeleton, const std::string& name) {
+std::size_t find_skeleton_joint(const SkeletonData& skeleton, const std::string& name) {
     const auto found = std::find(skeleton.joints.begin(), skeleton.joints.end(), name);
     return static_cast<std::size_t>(found - skeleton.joints.begin());
 }
@@ -118,8 +118,8 @@ find_twist_links(const SkeletonData& skeleton, std::span<const TwistJoint> asked
     }
     std::vector<TwistLink> links;
     for (const TwistJoint& twist : asked) {
-        const std::size_t joint = joint_named(skeleton, twist.joint);
-        const std::size_t of = joint_named(skeleton, twist.of);
+        const std::size_t joint = find_skeleton_joint(skeleton, twist.joint);
+        const std::size_t of = find_skeleton_joint(skeleton, twist.of);
         const std::size_t count = skeleton.joints.size();
         if (joint >= count || of >= count || of == joint || skeleton.parents[joint] < 0) {
             continue;
