@@ -14,13 +14,13 @@
 namespace limn {
 namespace {
 
-constexpr float kStartSpeed = 0.35f;  // at which someone who stands walks [m/s]
-constexpr float kStopSpeed = 0.15f;   // at which someone who walks stands [m/s]
-constexpr float kWaveTime = 2.4f;     // twice the clip [s]
-constexpr float kTurnTime = 0.6f;     // until all attention is there [s]
-constexpr float kForget = 1.4f;       // times the distance of noticing
-constexpr float kSideways = -0.1f;    // cosine of the widest angle to the front at which it looks
-constexpr float kEyeHeight = 1.6f;    // of whom it notices [m]
+constexpr float kStartSpeed = 0.35f;    // at which someone who stands walks [m/s]
+constexpr float kStopSpeed = 0.15f;     // at which someone who walks stands [m/s]
+constexpr float kWaveTime = 2.4f;       // twice the clip [s]
+constexpr float kAttentionTime = 0.6f;  // until all attention is there [s]
+constexpr float kForget = 1.4f;         // times the distance of noticing
+constexpr float kSideways = -0.1f;      // cosine of the widest angle to the front at which it looks
+constexpr float kEyeHeight = 1.6f;      // of whom it notices [m]
 
 /// The clip of an activity; made when it is needed for the first time.
 ClipId
@@ -112,7 +112,7 @@ void notice_characters(
             state.waving = random.uniform() < script.waves ? kWaveTime : 0.0f;
         }
         state.waving = std::max(state.waving - time->step, 0.0f);
-        const float change = time->step / kTurnTime;
+        const float change = time->step / kAttentionTime;
         state.attention =
             std::clamp(state.attention + (state.aware != 0 ? change : -change), 0.0f, 1.0f);
         if (look != nullptr) {
