@@ -10,13 +10,6 @@
 
 namespace limn {
 
-/// Clip time of `player`, a ClipPlayer or a MorphAnimation, after `step` [s]: wraps or holds at the
-/// end; always within 0 .. duration, whatever the values of its fields.
-template <typename Player>
-[[nodiscard]] float step_clip_time(const Player& player, float duration, float step) {
-    return clip_time(duration, player.time + player.speed * step, player.loop);
-}
-
 /// Advances every ClipPlayer, and every animation of a MorphPlayer, by one step. One without a clip
 /// keeps its time; those of characters with PoseKeys are advanced by advance_pose_keys().
 void advance_clips(

@@ -48,4 +48,11 @@ void sample_pose(
     const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& pose,
     std::span<float> weights);
 
+/// Clip time of `player`, a ClipPlayer or a MorphAnimation, after `step` [s]: wraps or holds at the
+/// end; always within 0 .. duration, whatever the values of its fields.
+template <typename Player>
+[[nodiscard]] float step_clip_time(const Player& player, float duration, float step) {
+    return clip_time(duration, player.time + player.speed * step, player.loop);
+}
+
 }  // namespace limn

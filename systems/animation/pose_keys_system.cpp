@@ -1,7 +1,7 @@
 #include "systems/animation/pose_keys_system.h"
 
 #include "ecs/base/log.h"
-#include "systems/animation/clip_player_system.h"
+#include "systems/animation/clip_sampling.h"
 
 // Techniques: anim.pose-keys, char.fk-keypose
 

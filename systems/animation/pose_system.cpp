@@ -11,7 +11,7 @@
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
 #include "systems/animation/twist_pose.h"
-#include "systems/animation/walk/motor_pose.h"
+#include "systems/animation/walk/apply_motor_pose.h"
 #include "systems/animation/walk/walk_pose.h"
 
 #include <algorithm>

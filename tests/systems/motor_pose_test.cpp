@@ -4,7 +4,7 @@
 #include "ecs/components/animation.h"
 #include "ecs/components/foot_plant.h"
 #include "ecs/snapshot.h"
-#include "systems/animation/walk/motor_pose.h"
+#include "systems/animation/walk/apply_motor_pose.h"
 #include "tests/near.h"
 #include "tests/systems/motor_fixture.h"
 #include "tests/systems/walk_fixture.h"

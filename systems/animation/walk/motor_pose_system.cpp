@@ -1,6 +1,6 @@
 #include "systems/animation/walk/motor_pose_system.h"
 
-#include "systems/animation/walk/motor_pose.h"
+#include "systems/animation/walk/apply_motor_pose.h"
 #include "systems/animation/walk/walk_plan.h"
 #include "systems/animation/walk/walk_step.h"
 

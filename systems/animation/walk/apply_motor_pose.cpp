@@ -1,4 +1,4 @@
-#include "systems/animation/walk/motor_pose.h"
+#include "systems/animation/walk/apply_motor_pose.h"
 
 #include "ecs/base/rotation.h"
 #include "systems/animation/ik/joint_tree.h"
