@@ -11,6 +11,7 @@ void add_memory_rows(CharacterBench& bench);
 void add_ragdoll_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
 void add_graph_rows(CharacterBench& bench);
+void add_people_rows(CharacterBench& bench);
 
 std::span<const CharacterPart> character_parts() {
     static constexpr CharacterPart kParts[] = {
@@ -22,7 +23,7 @@ std::span<const CharacterPart> character_parts() {
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
         {"graph", add_graph_rows},      // motion graphs
-        {"ragdoll", add_ragdoll_rows},
+        {"ragdoll", add_ragdoll_rows}, {"people", add_people_rows},  // 19, 22: whole steps
     };
     return kParts;
 }

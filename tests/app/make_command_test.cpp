@@ -26,13 +26,13 @@ TEST_CASE("make: a person becomes a .glb with a skin, 60 joints of a body, clips
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
     CHECK(run.out.starts_with("person.glb: 6 meshes, "));
-    CHECK(run.out.find(", 60 joints, 5 clips") != std::string::npos);
+    CHECK(run.out.find(", 60 joints, 6 clips") != std::string::npos);
     const Result<GltfScene> scene = load_gltf(folder.file("person.glb"));
     REQUIRE(scene);
     CHECK(scene->meshes.size() == 6);
     CHECK(scene->materials.size() == 6);
     CHECK(scene->skins.size() == 1);
-    CHECK(scene->clips.size() == 5);
+    CHECK(scene->clips.size() == 6);
     CHECK(find_body_joints(scene->skeleton).has(BodyPart::LeftToes));
     const Bounds box = find_bounds(*scene);
     CHECK(box.min.y == near(0).scale(1).epsilon(2e-3));
