@@ -59,12 +59,15 @@ gpu::ByteImage draw_show(const FoundShow& found, bool off) {
     return gpu::read_bytes(*frame.display);
 }
 
-/// All that an image depends on.
+/// All that an image depends on: `off` is patched on top of `set`; without it, off is the level as
+/// it is.
 std::string image_key(const FoundShow& found, bool off) {
     const LevelShow& show = found.show;
+    const bool has_off = show.off.kind == JsonKind::Object;
     std::string key = fmt::format(
-        "{} {} {} {} {}", found.level.name, write_json(off ? show.off : show.set), show.time,
-        is_about_probes(show), show.camera_name);
+        "{} {} {} {} {} {}", found.level.name, !off || has_off ? write_json(show.set) : "null",
+        off && has_off ? write_json(show.off) : "null", show.time, is_about_probes(show),
+        show.camera_name);
     if (show.camera) {
         const ShowCamera& at = *show.camera;
         key += fmt::format(
