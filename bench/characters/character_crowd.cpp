@@ -138,4 +138,22 @@ std::vector<CrowdCharacter> BenchCrowd::characters() {
     return all;
 }
 
+void pose_by_hand(BenchCrowd& crowd, std::vector<float>& buffer) {
+    const std::size_t joints = crowd.joints();
+    buffer.resize(joints * 33);
+    float* const qa = buffer.data();
+    float* const qb = qa + 4 * joints;
+    float* const ta = qb + 4 * joints;
+    float* const tb = ta + 3 * joints;
+    float* const model = tb + 3 * joints;
+    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
+        const BenchCrowd::Member& member = crowd.members[i];
+        sample_scalar(crowd.scalar_clips[member.clip], member.time, qa, ta);
+        sample_scalar(crowd.scalar_clips[member.next], member.next_time, qb, tb);
+        blend_scalar(qa, ta, qb, tb, member.weight, joints, qa, ta);
+        multiply_scalar(crowd.skeleton.parents.data(), qa, ta, joints, model);
+        skin_scalar(model, &crowd.bind[0].row[0].x, joints, &crowd.matrices_of(i)->row[0].x);
+    }
+}
+
 }  // namespace limn::bench

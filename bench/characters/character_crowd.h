@@ -44,4 +44,8 @@ struct BenchCrowd {
     [[nodiscard]] std::vector<CrowdCharacter> characters();
 };
 
+/// The matrices of all members by the scalar loops: two samples, blended, ready to skin. `buffer`:
+/// scratch memory.
+void pose_by_hand(BenchCrowd& crowd, std::vector<float>& buffer);
+
 }  // namespace limn::bench

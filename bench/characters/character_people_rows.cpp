@@ -89,23 +89,8 @@ double measure_step(CharacterBench& bench, PeopleWorld& people) {
 /// Two samples, blended, to matrices, of 2000 characters, in plain C++ [s].
 double measure_scalar_chain(CharacterBench& bench) {
     BenchCrowd crowd(kPersonJoints, kPeople);
-    const std::size_t joints = crowd.joints();
-    std::vector<float> buffer(joints * 33);
-    float* const qa = buffer.data();
-    float* const qb = qa + 4 * joints;
-    float* const ta = qb + 4 * joints;
-    float* const tb = ta + 3 * joints;
-    float* const model = tb + 3 * joints;
-    return race(wall_seconds, std::min(bench.repeats, 20), [&] {
-        for (std::size_t i = 0; i < crowd.members.size(); ++i) {
-            const BenchCrowd::Member& member = crowd.members[i];
-            sample_scalar(crowd.scalar_clips[member.clip], member.time, qa, ta);
-            sample_scalar(crowd.scalar_clips[member.next], member.next_time, qb, tb);
-            blend_scalar(qa, ta, qb, tb, member.weight, joints, qa, ta);
-            multiply_scalar(crowd.skeleton.parents.data(), qa, ta, joints, model);
-            skin_scalar(model, &crowd.bind[0].row[0].x, joints, &crowd.matrices_of(i)->row[0].x);
-        }
-    })[0];
+    std::vector<float> buffer;
+    return race(wall_seconds, std::min(bench.repeats, 20), [&] { pose_by_hand(crowd, buffer); })[0];
 }
 
 }  // namespace

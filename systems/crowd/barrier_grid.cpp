@@ -15,8 +15,8 @@ namespace limn {
 namespace {
 
 constexpr float kBarrierCell = 4.0f;  // [m]
-constexpr std::uint32_t kLeastColumns = 32;
-constexpr std::uint32_t kMostColumns = 256;
+constexpr std::uint32_t kMinColumns = 32;
+constexpr std::uint32_t kMaxColumns = 256;
 constexpr std::int32_t kFarCell = 999999;  // beyond, coordinates are clamped
 
 /// The cell of a point, which is `steps` cells further in the table.
@@ -77,8 +77,8 @@ void update_barrier_grid(std::span<const CrowdBarrier> barriers, float reach, Ba
     }
     grid.barriers.assign(barriers.begin(), barriers.end());
     grid.reach = reach;
-    grid.columns = kLeastColumns;
-    while (grid.columns < kMostColumns && grid.columns * grid.columns < 4 * barriers.size()) {
+    grid.columns = kMinColumns;
+    while (grid.columns < kMaxColumns && grid.columns * grid.columns < 4 * barriers.size()) {
         grid.columns *= 2;
     }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cell and barrier

@@ -20,8 +20,8 @@ namespace limn {
 
 namespace {
 
-constexpr float kLeastShift = 1e-4f;  ///< of a vertex that a shape moves [m]
-constexpr float kMostShift = 0.12f;   ///< far from a hip, skin is held by what is around it [m]
+constexpr float kMinShift = 1e-4f;  ///< of a vertex that a shape moves [m]
+constexpr float kMaxShift = 0.12f;  ///< far from a hip, skin is held by what is around it [m]
 
 struct BendHinge {
     std::uint16_t joint = 0;
@@ -73,7 +73,7 @@ Vec3 bend_shift(const BendHinge& hinge, const Vec3& p, float share) {
     const float outside = 1 - glm::smoothstep(-0.2f, 0.7f, inside);
     const Vec3 shift = outside * (glm::inverse(blend) * (wanted - blend * from));
     const float length = glm::length(shift);
-    return length > 0 ? kMostShift * std::tanh(length / kMostShift) / length * shift : shift;
+    return length > 0 ? kMaxShift * std::tanh(length / kMaxShift) / length * shift : shift;
 }
 
 MorphTarget
@@ -87,7 +87,7 @@ make_bend_shape(const MeshData& mesh, const SkeletonData& skeleton, const BendHi
             share += carried[mesh.skin.joints[i]] ? mesh.skin.weights[i] : 0.0f;
         }
         const Vec3 shift = bend_shift(hinge, mesh.positions[v], share);
-        if (glm::length(shift) > kLeastShift) {
+        if (glm::length(shift) > kMinShift) {
             shape.vertices.push_back(v);
             shape.positions.push_back(shift);
         }
