@@ -8,7 +8,10 @@ packages=(
     doctest-dev libbenchmark-dev libkissfft-dev
     glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick ffmpeg
 )
-ci_packages=(clang clang-format libclang-rt-14-dev mesa-vulkan-drivers espeak-ng)
+ci_packages=(
+    clang clang-format libclang-rt-14-dev mesa-vulkan-drivers espeak-ng
+    slurmctld slurmd slurm-client munge parallel openssh-server openssh-client jq  # tests/farm.sh
+)
 
 say() { printf '%s\n' "$*" >&2; }
 die() { say "$(basename "$0"): $*"; exit 1; }

@@ -9,8 +9,8 @@ cd "$(dirname "$0")/.."
 
 # Commands, without their comments.
 found() {
-    cat README.md ./*/README.md ./*/*/README.md | sed -n '/^```sh/,/^```/p' | grep -E '(^|/)limn ' | sed 's|^build/release/||; s/ *# .*//'
-    grep -ohE '`limn [^`]*`' README.md TECHNIQUES.md ./*/README.md ./*/*/README.md content/levels/*.json | tr -d '`'
+    cat README.md ./*/README.md ./*/*/README.md ./*/*/*/README.md | sed -n '/^```sh/,/^```/p' | grep -E '(^|/)limn ' | sed 's|^build/release/||; s/ *# .*//'
+    grep -ohE '`limn [^`]*`' README.md TECHNIQUES.md ./*/README.md ./*/*/README.md ./*/*/*/README.md content/levels/*.json | tr -d '`'
     for command in $("$limn" --help | awk '/^Subcommands/ {on = 1; next} /^$/ {on = 0} on {print $1}'); do
         "$limn" "$command" --help | sed -nE 's/^  (limn .*)/\1/p'
     done
@@ -30,6 +30,8 @@ quick() {
     'limn render'*) command="$command --size 64x36" ;;
     'limn view'*' -o '*) ;;
     'limn view'*) command="$command -o viewed.png" ;;
+    'limn farm slurm'* | 'limn farm parallel'*) return ;;  # tests/farm.sh has nodes
+    'limn farm local'*) command=$(sed -E 's/quality --all/quality surfaces/; s/bench --all/bench gallery --size 64x36 --frames 2/' <<<"$command") ;;
     'limn bench'*) command="$command --size 64x36 --frames 2 --warmup 1" ;;
     'limn hash'*) command="$command --frames 20" ;;
     'limn import'* | 'limn speak'* | 'limn bake strain_model'*) [ -d ../shared/assets ] || return ;;
@@ -112,12 +114,16 @@ if [ -d ../shared/assets ]; then
         && "$limn" speak "exactly one" --face face.glb -o one.glb --record clock.json) >/dev/null || exit 1
 fi
 
+# A job for status, resume, check and cancel.
+(cd "$folder" && "$limn" farm local "$OLDPWD/tests/farm/turn.level.json" --size 64x36 --frames 0:1 -o shot/frame_%05d.png >/dev/null) || exit 1
+
 mapfile -t commands < <(found | tr -s ' ' | sort -u | while read -r command; do quick "$command"; done | tr -s ' ' | sort -u)
 export DISPLAY='' limn folder
 run() {  # COMMAND: in a folder of its own with what the examples call theirs
     local place output
     place=$(mktemp -d -p "$runs")
     cp -al "$folder/." "$place"
+    [[ $1 != 'limn farm local'* ]] || rm -r "$place/shot"
     if output=$(cd "$place" && eval "\"$limn\" ${1#limn }" 2>&1); then
         echo "ok      $1"
     else

@@ -26,6 +26,7 @@ struct QualityOptions {
     std::string file;                     ///< a model for `effect`; empty = its own
     std::string json;                     ///< file to write; empty = none
     std::string html;                     ///< file to write; empty = none
+    bool list = false;                    ///< print the names of the effects, measure none
     std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 
@@ -122,6 +123,7 @@ int run(int argc, char** argv) {
         ->type_name("gpu|software");
     program.add_option("--json", options.json, "write the results")->type_name("FILE");
     program.add_option("--html", options.html, "write a page with images")->type_name("FILE");
+    program.add_flag("--list", options.list, "print the names of all effects, measure none");
     program.callback([&options] {
         if (const Status fits = check_options(options); !fits) {
             throw CLI::ValidationError(fits.error().message);
@@ -141,6 +143,12 @@ int run(int argc, char** argv) {
           "  limn quality wrinkles face.glb --html face.html");
     if (const auto stop = bench::parse_arguments(program, "limn quality", argc, argv)) {
         return *stop;
+    }
+    if (options.list) {
+        for (const QualityEffect& effect : quality_effects()) {
+            fmt::print("{}\n", effect.name);
+        }
+        return 0;
     }
     const Status status = measure(options);
     if (!status) {

@@ -1,6 +1,7 @@
 // Every show of every level, on and off: the images differ, or for methods that must agree, do not.
 
 #include "content/app/commands/render_command.h"
+#include "content/app/commands/render_frames.h"
 #include "content/app/commands/stage.h"
 #include "content/load/files/json_document.h"
 #include "content/load/level/level_show.h"

@@ -177,26 +177,41 @@ Status write_difference(const std::string& path, const ColorImage& a, const Colo
     return write_png(path, difference.width, difference.height, 3, bytes);
 }
 
+/// Two images of one size.
+struct LoadedPair {
+    Loaded a;
+    Loaded b;
+};
+
+Result<LoadedPair> load_pair(const std::string& path_a, const std::string& path_b) {
+    LoadedPair pair;
+    pair.a = LIMN_TRY(load_comparable(path_a));
+    pair.b = LIMN_TRY(load_comparable(path_b));
+    const ColorImage& a = pair.a.display;
+    const ColorImage& b = pair.b.display;
+    if (a.width != b.width || a.height != b.height) {
+        return fail(
+            "{}: found {} x {} pixels, expected {} x {} as {} has", path_b, b.width, b.height,
+            a.width, a.height, path_a);
+    }
+    return pair;
+}
+
 }  // namespace
 
 Status run_compare(const CompareOptions& options) {
-    const Result<Loaded> a = load_comparable(options.a);
-    if (!a) {
-        return a.error();
-    }
-    const Result<Loaded> b = load_comparable(options.b);
-    if (!b) {
-        return b.error();
-    }
-    if (a->display.width != b->display.width || a->display.height != b->display.height) {
-        return fail(
-            "{}: found {} x {} pixels, expected {} x {} as {} has", options.b, b->display.width,
-            b->display.height, a->display.width, a->display.height, options.a);
-    }
-    const Comparison numbers = compare(*a, *b);
+    const LoadedPair pair = LIMN_TRY(load_pair(options.a, options.b));
+    const Comparison numbers = compare(pair.a, pair.b);
     options.json ? print_json(numbers) : print_table(numbers);
     return options.diff.empty() ? Status(Done{})
-                                : write_difference(options.diff, a->display, b->display);
+                                : write_difference(options.diff, pair.a.display, pair.b.display);
+}
+
+Result<DisplayedDifference> compare_displayed(const std::string& a, const std::string& b) {
+    const LoadedPair pair = LIMN_TRY(load_pair(a, b));
+    return DisplayedDifference{
+        psnr(pair.a.display, pair.b.display),
+        static_cast<double>(largest_difference(pair.a.display, pair.b.display).difference)};
 }
 
 }  // namespace limn

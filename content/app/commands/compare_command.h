@@ -18,4 +18,13 @@ struct CompareOptions {
 
 [[nodiscard]] Status run_compare(const CompareOptions& options);
 
+/// How far two images are from each other as displayed.
+struct DisplayedDifference {
+    double psnr = 0;     ///< [dB]; infinite: equal
+    double largest = 0;  ///< of a channel, 0 .. 1
+};
+/// Fails where one cannot be read, or where they have different sizes.
+[[nodiscard]] Result<DisplayedDifference>
+compare_displayed(const std::string& a, const std::string& b);
+
 }  // namespace limn

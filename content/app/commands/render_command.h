@@ -43,12 +43,6 @@ struct RenderOptions {
     bool quiet = false;                   ///< prints nothing but errors and warnings
 };
 
-/// One frame at `time` as `limn play` shows it, antialiased. First draws the frames it depends on:
-/// the first one if probes keep what they captured, and the previous ones that motion blur averages
-/// or temporal antialiasing accumulates.
-[[nodiscard]] FrameOutput draw_still(
-    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options, double time);
-
 /// Rejects options that exclude each other and invalid output names; errors are wrong usage.
 [[nodiscard]] Status check_render_options(const RenderOptions& options);
 

@@ -1,5 +1,6 @@
 #include "content/load/files/atomic_file.h"
 
+#include "ecs/base/check.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <mutex>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -104,7 +106,47 @@ Status write_through_partial(const std::string& path, std::span<const std::byte>
     return Done{};
 }
 
+/// Of the ReadRecorder that exists.
+struct RecordedReads {
+    std::mutex mutex;
+    bool active = false;
+    std::vector<std::string> paths;
+};
+
+RecordedReads& recorded_reads() {
+    static RecordedReads reads;
+    return reads;
+}
+
+void record_read(const std::string& path) {
+    RecordedReads& reads = recorded_reads();
+    const std::scoped_lock lock(reads.mutex);
+    if (reads.active) {
+        reads.paths.push_back(path);
+    }
+}
+
 }  // namespace
+
+ReadRecorder::ReadRecorder() {
+    RecordedReads& reads = recorded_reads();
+    const std::scoped_lock lock(reads.mutex);
+    LIMN_CHECK(!reads.active);
+    reads.active = true;
+    reads.paths.clear();
+}
+
+ReadRecorder::~ReadRecorder() {
+    RecordedReads& reads = recorded_reads();
+    const std::scoped_lock lock(reads.mutex);
+    reads.active = false;
+}
+
+std::vector<std::string> ReadRecorder::paths() const {
+    RecordedReads& reads = recorded_reads();
+    const std::scoped_lock lock(reads.mutex);
+    return reads.paths;
+}
 
 Status write_file(const std::string& path, std::span<const std::byte> bytes) {
     std::error_code ignored;
@@ -178,6 +220,7 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
         }
         done += static_cast<std::size_t>(got);
     }
+    record_read(path);
     return bytes;
 }
 

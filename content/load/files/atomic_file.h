@@ -31,4 +31,15 @@ namespace limn {
 [[nodiscard]] Result<std::vector<std::byte>>
 read_file(const std::string& path, std::uint64_t max_size = std::uint64_t{1} << 31);
 
+/// Lists the files that read_file reads, on any thread, while it exists; one at a time.
+class ReadRecorder {
+  public:
+    ReadRecorder();
+    ReadRecorder(const ReadRecorder&) = delete;
+    ReadRecorder& operator=(const ReadRecorder&) = delete;
+    ~ReadRecorder();
+    /// As they were given to read_file, in any order.
+    [[nodiscard]] std::vector<std::string> paths() const;
+};
+
 }  // namespace limn
