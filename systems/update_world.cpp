@@ -13,6 +13,7 @@
 #include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ik/ik_goal_system.h"
 #include "systems/animation/key_track_system.h"
+#include "systems/animation/matching/motion_match_system.h"
 #include "systems/animation/pose_keys_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/animation/ragdoll/ragdoll_system.h"
@@ -120,6 +121,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_motion_states>(Create, Both);
     systems.add<prepare_motion_plans>(Create, Both);
     systems.add<update_motion_graphs>(Move);
+    systems.add<add_match_states>(Create, Both);
+    systems.add<prepare_match_databases>(Create, Both);
     systems.add<advance_clips>(Animate);
     systems.add<fade_crowd_clips>(Animate);  // after clips: keeps their times
     systems.add<prepare_pose_keys>(Animate, Both);
@@ -132,7 +135,8 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_motor_poses>(Create, Both);
     systems.add<add_crowd_walks>(Create, Both);
     systems.add<update_walk_routes>(Animate);
-    systems.add<update_walks>(Animate, Both);  // after all that moves characters
+    systems.add<update_motion_matching>(Animate, Both);  // after what sets intents
+    systems.add<update_walks>(Animate, Both);            // after all that moves characters
     systems.add<update_motor_poses>(
         Animate, Both);  // after walks: moves feet that are off the ground
     systems.add<update_foot_contacts>(Animate, Both);
@@ -257,6 +261,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<CrowdLibrary>(world);
     resource_or_default<MotionGraphs>(world);
     resource_or_default<MotionPlans>(world);
+    resource_or_default<MatchDatabases>(world);
     resource_or_default<CrowdMemory>(world);
     resource_or_default<LightMapOccluders>(world);
     return resource_or_default<FrameTime>(world);

@@ -39,6 +39,7 @@
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/motion_match.h"
 #include "ecs/components/motor.h"
 #include "ecs/components/motor_pose.h"
 #include "ecs/components/move_intent.h"
@@ -153,6 +154,8 @@ void register_all_components() {
     register_component<MotionGraph>();
     register_component<MotionGraphState>();
     register_component<MotionStyle>();
+    register_component<MotionMatch>();
+    register_component<MotionMatchState>();
     register_component<CharacterMotor>();
     register_component<MotorState>();
     register_component<MotorPose>();

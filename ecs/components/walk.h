@@ -184,14 +184,17 @@ struct ComponentTraits<WalkState> : DefaultTraits {
 struct RoutePoint {
     Vec3 position = {0, 0, 0};
     float wait = 0.0f;
+    float speed = 0.0f;
 };
 
 LIMN_FIELDS(RoutePoint) {
     LIMN_FIELD(position, "in the space of the Transform's parent; y is ignored", "m");
     LIMN_FIELD(wait, "time to stand there", "s", 0, 3600);
+    LIMN_FIELD(speed, "on the way there; 0: that of its walk", "m/s", 0, 100);
 }
 
-/// With a MoveIntent and a Walk: sets the intent so that it goes from point to point.
+/// With a MoveIntent and a Walk, a MotionMatch or a MotionGraph that moves it: sets the intent so
+/// that it goes from point to point.
 struct WalkRoute {
     std::vector<RoutePoint> points = {};
     bool loop = true;

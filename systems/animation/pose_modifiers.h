@@ -3,6 +3,7 @@
 #include "ecs/components/foot_plant.h"
 #include "ecs/components/ik.h"
 #include "ecs/components/motion_graph.h"
+#include "ecs/components/motion_match.h"
 #include "ecs/components/motor_pose.h"
 #include "ecs/components/pose_keys.h"
 #include "ecs/components/ragdoll.h"
@@ -32,6 +33,7 @@ struct PoseModifiers {
     Query<const RagdollState> ragdolls;
     Query<const PoseKeysState> keys;
     Query<const TwistJoints, const TwistLinks> twists;
+    Query<const MatchPose, const MotionMatchState> matches;
 };
 
 template <>
@@ -44,6 +46,7 @@ struct SystemParam<PoseModifiers>
           Query<const MotionGraph, const MotionGraphState, Optional<const MotionStyle>>,
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
           Query<const RagdollState>, Query<const PoseKeysState>,
-          Query<const TwistJoints, const TwistLinks>> {};
+          Query<const TwistJoints, const TwistLinks>,
+          Query<const MatchPose, const MotionMatchState>> {};
 
 }  // namespace limn

@@ -9,6 +9,7 @@
 #include "systems/animation/graph/graph_pose.h"
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/matching/match_step.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
 #include "systems/animation/twist_pose.h"
 #include "systems/animation/walk/apply_motor_pose.h"
@@ -186,7 +187,7 @@ class Modifiers {
           any_(
               !queries.walks.empty() || !queries.plants.empty() || !queries.rigs.empty()
               || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()
-              || !queries.twists.empty()),
+              || !queries.twists.empty() || !queries.matches.empty()),
           any_graph_(!queries.graphs.empty()), any_keys_(!queries.keys.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
@@ -194,7 +195,7 @@ class Modifiers {
                 && (queries_.walks.contains(entity) || queries_.plants.contains(entity)
                     || queries_.rigs.contains(entity) || queries_.looks.contains(entity)
                     || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)
-                    || queries_.twists.contains(entity)))
+                    || queries_.twists.contains(entity) || queries_.matches.contains(entity)))
                || (any_graph_ && queries_.graphs.contains(entity))
                || (any_keys_ && queries_.keys.contains(entity));
     }
@@ -216,6 +217,13 @@ class Modifiers {
                    skeleton, pose, weights, is_cut);
     }
 
+    /// Whether motion matching has changed its pose without a blend.
+    [[nodiscard]] bool is_cut(Entity entity) const {
+        const auto* const state =
+            any_ ? queries_.matches.find<const MotionMatchState>(entity) : nullptr;
+        return state != nullptr && state->cut != 0;
+    }
+
     /// Applies what the character has, in this order. `last`: joint matrices of the last step,
     /// empty in the first.
     void apply(
@@ -223,6 +231,9 @@ class Modifiers {
         LocalPose& pose) const {
         if (!any_) {
             return;
+        }
+        if (const MatchPose* const match = queries_.matches.find<const MatchPose>(entity)) {
+            apply_match_pose(*match, pose);
         }
         if (const Walk* const walk = queries_.walks.find<const Walk>(entity)) {
             apply_walk(
@@ -303,6 +314,7 @@ void step_character(
             fade_from(assets, skeleton, playback.crowd, scratch);
         }
     }
+    playback.is_cut = playback.is_cut || modifiers.is_cut(entity);
     modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
     compute_joint_matrices(skeleton, scratch, pose.joints);
     finish_step(assets, skeleton, playback, is_new, pose, morph);

@@ -94,7 +94,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.morph-target", "morph targets, blend shapes"},
     {"char.motion-constrain", "reach a target at a time, motion adaptation, grasping, catching"},
     {"char.motion-modify", "motion style: speed, exaggerated and damped motion"},
-    {"char.motion-select", "motion graph, animation state machine, blend spaces"},
+    {"char.motion-select", "motion graph, animation state machine, blend spaces, motion matching"},
     {"char.pose-eval", "pose at a time, pose sampling"},
     {"char.retarget-body", "motion retargeting to another body"},
     {"char.skeleton-hierarchy", "skeleton tree, bone hierarchy"},

@@ -7,7 +7,8 @@
 namespace limn {
 namespace {
 
-constexpr float kArrival = 0.06f;  // from where it comes to rest without braking [m]
+constexpr float kArrival = 0.06f;     // from where it comes to rest without braking [m]
+constexpr float kClipArrival = 0.3f;  // likewise, where clips move it [m]
 
 }  // namespace
 
@@ -28,11 +29,14 @@ void add_walk_states(
 }
 
 void update_walk_routes(
-    Query<const WalkRoute, const Walk, const WalkState, const Transform, WalkRouteState, MoveIntent>
+    Query<
+        const WalkRoute, Optional<const Walk>, Optional<const WalkState>, const Transform,
+        WalkRouteState, MoveIntent>
         walkers,
     Res<const FrameTime> time) {
-    walkers.par_each([step = time->step](
-                         const WalkRoute& route, const Walk& walk, const WalkState& feet,
+    const Walk usual;
+    walkers.par_each([&usual, step = time->step](
+                         const WalkRoute& route, const Walk* walk, const WalkState* feet,
                          const Transform& transform, WalkRouteState& state, MoveIntent& intent) {
         const auto count = static_cast<std::uint32_t>(route.points.size());
         intent.velocity = Vec3(0);
@@ -45,14 +49,17 @@ void update_walk_routes(
         const float far = glm::length(way);
         const bool is_last = !route.loop && state.next + 1 == count;
         const bool stops = point.wait > 0 || is_last;
-        const float speed = effective_walk(walk).speed;
+        const Walk& style = walk != nullptr ? *walk : usual;
+        const float speed = point.speed > 0 ? point.speed : effective_walk(style).speed;
         // Slows down in time for where it stops: both time constants of the root.
-        const float braking = far / std::max(2.2f * walk.response, 0.05f);
-        if (far > (stops ? kArrival : route.reach) && is_finite(way)) {
+        const float braking = far / std::max(2.2f * style.response, 0.05f);
+        const float arrival = walk != nullptr ? kArrival : kClipArrival;
+        if (far > (stops ? arrival : route.reach) && is_finite(way)) {
             intent.velocity = (stops ? std::min(speed, braking) : speed) / far * way;
             return;
         }
-        state.waited += feet.flying == WalkState::kNoFoot ? step : 0.0f;
+        const bool stands = feet == nullptr || feet->flying == WalkState::kNoFoot;
+        state.waited += stands ? step : 0.0f;
         if (!is_last && state.waited >= point.wait) {
             state.waited = 0;
             state.next = (state.next + 1) % count;

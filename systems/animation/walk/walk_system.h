@@ -26,7 +26,9 @@ void add_walk_states(
 
 /// Sets the intents of those who follow routes. Before update_walks.
 void update_walk_routes(
-    Query<const WalkRoute, const Walk, const WalkState, const Transform, WalkRouteState, MoveIntent>
+    Query<
+        const WalkRoute, Optional<const Walk>, Optional<const WalkState>, const Transform,
+        WalkRouteState, MoveIntent>
         walkers,
     Res<const FrameTime> time);
 

@@ -1,0 +1,213 @@
+#include "systems/animation/matching/match_feet.h"
+
+#include "ecs/base/rotation.h"
+#include "systems/animation/graph/inertial_offset.h"
+#include "systems/animation/ik/joint_tree.h"
+#include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/walk/walk_step.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+// Techniques: char.blend
+
+namespace limn {
+namespace {
+
+constexpr float kLongestLeg = 0.998f;   // of a leg, which never is quite straight
+constexpr float kLegSoftness = 0.002f;  // [leg lengths]
+constexpr float kKneeAhead = 0.6f;      // pull on knees, forward [leg lengths]
+constexpr float kHipsEase = 0.01f;      // over which hips begin to sink [leg lengths]
+constexpr float kMaxFootRate = 6.0f;    // of an offset [m/s]
+constexpr float kMaxFootSpin = 15.0f;   // [rad/s]
+
+float yaw_of(const Quat& rotation) {
+    return 2 * std::atan2(rotation.y, rotation.w);
+}
+
+Quat about_up(float yaw) {
+    return rotation_about({0, 1, 0}, yaw);
+}
+
+/// Faster ones are no motion but a jump, and are dropped.
+Vec3 limited(const Vec3& rate, float most) {
+    return is_finite(rate) && glm::length(rate) < most ? rate : Vec3(0);
+}
+
+/// The clip's foot in the space of the parent.
+FootPoint point_in(const FootPoint& local, const Transform& at) {
+    return {
+        at.position + at.rotation * (uniform_scale(at) * local.place),
+        at.rotation * local.rotation};
+}
+
+Vec3 turn_between(const Quat& from, const Quat& to) {
+    return 2.0f * log_rotation(to_same_hemisphere(Quat(1, 0, 0, 0), to * glm::conjugate(from)));
+}
+
+/// From the rotation of the clip's foot in its root's space to that of a planted one.
+Quat anchored(const FootAim& aim, float anchor_yaw) {
+    return about_up(anchor_yaw + aim.root.yaw) * aim.local.rotation;
+}
+
+/// The lower one of heel and ball, from the ball.
+Vec3 find_pivot(const FootAim& aim, const Quat& rotation) {
+    const Vec3 heel = rotation * aim.heel;
+    return heel.y < -aim.sole ? aim.heel : Vec3(0);
+}
+
+/// By how much a foot has to be raised for ball and heel not to be below the ground, or below where
+/// the clip has them [m].
+float find_lift(
+    const FootAim& aim, const Transform& at, const FootPoint& target, const FootPoint& shown) {
+    const float scale = uniform_scale(at);
+    const float ground = at.position.y;
+    const auto heel = [&](const FootPoint& foot) {
+        return foot.place.y + scale * (foot.rotation * aim.heel).y;
+    };
+    const float ball = std::min(ground + scale * aim.sole, target.place.y);
+    return std::max({0.0f, ball - shown.place.y, std::min(ground, heel(target)) - heel(shown)});
+}
+
+}  // namespace
+
+Vec3 ball_offset(const SkeletonData& skeleton, const WalkLeg& leg) {
+    return leg.toes < skeleton.joints.size() ? skeleton.rest.translations[leg.toes] : Vec3(0);
+}
+
+Vec3 heel_offset(const SkeletonData& skeleton, const WalkLeg& leg) {
+    const Quat rest = find_place(skeleton, skeleton.rest, leg.foot).rotation;
+    return glm::conjugate(rest) * (leg.heel - leg.ankle);
+}
+
+FootPoint find_foot(const SkeletonData& skeleton, const WalkLeg& leg, const LocalPose& pose) {
+    const JointPlace ankle = find_place(skeleton, pose, leg.foot);
+    return {ankle.position + ankle.rotation * ball_offset(skeleton, leg), ankle.rotation};
+}
+
+void place_foot(const FootAim& aim, const Transform& at, MatchFoot& foot) {
+    foot = {};
+    const FootPoint target = point_in(aim.local, at);
+    foot.place = foot.aim = target.place;
+    foot.rotation = target.rotation;
+    capture_foot(aim, at, {}, foot);
+}
+
+FootRate rate_between(const FootPoint& from, const FootPoint& to, float dt, const Transform& at) {
+    return {
+        at.rotation * (uniform_scale(at) * (to.place - from.place)) / dt,
+        at.rotation * (turn_between(from.rotation, to.rotation) / dt)};
+}
+
+void capture_foot(const FootAim& aim, const Transform& at, const FootRate& rate, MatchFoot& foot) {
+    foot.clock = 0;
+    foot.planted = aim.contact ? 1 : 0;
+    FootPoint target = point_in(aim.local, at);
+    if (aim.contact) {
+        // The heading stays as long as the contact does.
+        const Quat level = about_up(yaw_of(at.rotation)) * aim.local.rotation;
+        const float yaw = yaw_of(at.rotation) + turn_between(level, foot.rotation).y;
+        foot.anchor_yaw = yaw - aim.root.yaw;
+        target.rotation = anchored(aim, foot.anchor_yaw);
+    }
+    foot.shift.offset = foot.place - target.place;
+    foot.shift.rate = Vec3(0);
+    foot.turn.offset = turn_between(target.rotation, foot.rotation);
+    foot.turn.rate = Vec3(0);
+    if (!aim.contact) {
+        foot.shift.rate = limited(foot.velocity - rate.velocity, kMaxFootRate);
+        foot.turn.rate = limited(foot.spin - rate.spin, kMaxFootSpin);
+    }
+    foot.aim = point_in(aim.local, at).place;
+}
+
+void step_foot(
+    const FootAim& aim, const Transform& at, float blend, float reach, float dt, MatchFoot& foot) {
+    const Vec3 aim_place = point_in(aim.local, at).place;
+    // The root's own corrections are in it: a foot that leaves the ground takes them up.
+    const FootRate rate = {dt > 0 ? (aim_place - foot.aim) / dt : Vec3(0), foot.spin};
+    FootAim now = aim;
+    const bool was_planted = foot.planted != 0;
+    const float far =
+        glm::distance(Vec2(foot.place.x, foot.place.z), Vec2(aim_place.x, aim_place.z));
+    now.contact = aim.contact && far < reach;
+    const auto show = [&] {
+        FootPoint target = point_in(aim.local, at);
+        if (was_planted) {
+            target.rotation = anchored(aim, foot.anchor_yaw);
+        }
+        const Vec3 turn = inertial_vector(foot.turn, blend, foot.clock);
+        const Quat rotation = normalize_or_identity(exp_rotation(0.5f * turn) * target.rotation);
+        Vec3 place = target.place + inertial_vector(foot.shift, blend, foot.clock);
+        if (was_planted) {  // rolls over a point that stays
+            const Vec3 pivot = uniform_scale(at) * find_pivot(aim, foot.rotation);
+            const Vec3 rolled = foot.place + foot.rotation * pivot - rotation * pivot;
+            place = {rolled.x, place.y, rolled.z};
+        }
+        place.y += find_lift(aim, at, target, {place, rotation});
+        if (dt > 0) {
+            foot.velocity = (place - foot.place) / dt;
+            foot.spin = turn_between(foot.rotation, rotation) / dt;
+        }
+        foot.place = place;
+        foot.rotation = rotation;
+    };
+    foot.clock = std::min(foot.clock + dt, 1e3f);
+    show();
+    if (was_planted != now.contact) {
+        capture_foot(now, at, rate, foot);
+    }
+    foot.aim = aim_place;
+}
+
+void apply_match_feet(
+    const SkeletonData& skeleton, const WalkBody& body, const std::array<MatchFoot, 2>& feet,
+    const Transform& at, LocalPose& pose) {
+    if (!body.can_walk) {
+        return;
+    }
+    const Quat back = glm::conjugate(at.rotation);
+    const float inverse_scale = 1 / uniform_scale(at);
+    std::array<Vec3, 2> ankles{};
+    std::array<Quat, 2> rotations{};
+    float sink = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const WalkLeg& leg = body.legs[i];
+        rotations[i] = back * feet[i].rotation;
+        ankles[i] = inverse_scale * (back * (feet[i].place - at.position))
+                    - rotations[i] * ball_offset(skeleton, leg);
+        const Vec3 way = find_place(skeleton, pose, leg.thigh).position - ankles[i];
+        const float most = kLongestLeg * leg.length;
+        const float flat = way.x * way.x + way.z * way.z;
+        const float height = std::sqrt(std::max(most * most - flat, square(0.3f * most)));
+        // Smooth where it begins: the hips do not jerk as a leg gets straight.
+        const float over = way.y - height;
+        const float ease = kHipsEase * leg.length;
+        sink = std::max(
+            sink, over > ease    ? over
+                  : over > -ease ? square(over + ease) / (4 * ease)
+                                 : 0);
+    }
+    pose.translations[0].y -= sink;
+    const Quat hips = find_place(skeleton, pose, body.hips).rotation
+                      * glm::conjugate(find_place(skeleton, skeleton.rest, body.hips).rotation);
+    const Vec3 ahead = hips * Vec3(std::sin(body.heading), 0, std::cos(body.heading));
+    const Vec3 hinge = glm::cross(hips * Vec3(0, 1, 0), ahead);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const WalkLeg& leg = body.legs[i];
+        // As it is bent, but forward where it is nearly straight.
+        const Vec3 hip = find_place(skeleton, pose, leg.thigh).position;
+        const Vec3 knee = find_place(skeleton, pose, leg.shin).position;
+        const Vec3 ankle = find_place(skeleton, pose, leg.foot).position;
+        const Vec3 pole = knee - 0.5f * (hip + ankle) + kKneeAhead * leg.length * ahead;
+        const LimbReach reach = {
+            .target = ankles[i],
+            .options = {.pole = pole, .hinge = hinge, .softness = kLegSoftness * leg.length}};
+        reach_with_limb(skeleton, {leg.thigh, leg.shin, leg.foot}, reach, pose);
+        set_joint_rotation(skeleton, leg.foot, rotations[i], 1, pose);
+    }
+}
+
+}  // namespace limn

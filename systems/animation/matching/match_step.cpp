@@ -1,0 +1,419 @@
+#include "systems/animation/matching/match_step.h"
+
+#include "ecs/base/rotation.h"
+#include "systems/animation/graph/inertial_offset.h"
+#include "systems/animation/matching/match_feet.h"
+#include "systems/animation/matching/match_root.h"
+#include "systems/animation/walk/walk_step.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+// Techniques: char.blend, char.motion-select
+
+namespace limn {
+namespace {
+
+constexpr float kForecastStep = 1.0f / 30;       // of the wanted path [s]
+constexpr float kVelocitySpan = 1.0f / 1000.0f;  // over which velocities are measured [s]
+constexpr float kLongestStep = 10.0f;            // what is longer is left out [s]
+constexpr float kShortestInterval = 1.0f / 120;  // between searches [s]
+constexpr float kSearchEarly = 1e-3f;            // by which a search may come too early [s]
+constexpr float kSameFrame = 0.25f;              // nearer ones are no reason to jump [s]
+constexpr float kGoodEnough = 0.02f;             // squared distance that needs no better frame
+constexpr float kClipLeft = 0.07f;               // of a clip that is over [s]
+constexpr float kSteerResponse = 0.15f;          // [s]
+constexpr float kSteerSpeed = 0.4f;              // above it, a character can be steered [m/s]
+constexpr float kContactGap = 0.05f;             // in which a foot is not lifted [s]
+constexpr float kFootReach = 0.3f;               // of a planted foot off the clip's [leg lengths]
+constexpr float kMoved = 0.5f;                   // of a root that was placed elsewhere [m]
+
+float heading_of(const MatchContext& context, const Quat& rotation) {
+    const float heading = context.database.body.heading;
+    const Vec3 ahead = rotation * Vec3(std::sin(heading), 0, std::cos(heading));
+    return std::atan2(ahead.x, ahead.z);
+}
+
+/// Part of an initial velocity's way after a time: the velocity fades like 1 - s^2 (3 - 2 s) [s].
+float fading_way(float duration, float time) {
+    if (!(duration > 0)) {
+        return 0;
+    }
+    const float s = std::clamp(time / duration, 0.0f, 1.0f);
+    return duration * s * (1 - s * s * (1 - 0.5f * s));
+}
+
+float fading_share(float duration, float time) {
+    const float s = duration > 0 ? std::clamp(time / duration, 0.0f, 1.0f) : 1.0f;
+    return 1 - s * s * (3 - 2 * s);
+}
+
+const MatchClip& playing(const MatchContext& context, const MotionMatchState& state) {
+    return context.database.clips[state.clip];
+}
+
+/// Whether a clip ends so soon that another one has to play.
+bool is_over(const MatchContext& context, const MotionMatchState& state) {
+    return state.time > playing(context, state).duration - kClipLeft;
+}
+
+/// How fast a clip moves its root: way per time in the space of the root, and turn [m/s], [rad/s].
+GroundMove root_rate(const MatchClip& clip, float time) {
+    const float from = std::clamp(time, 0.0f, std::max(clip.duration - kMatchStep, 0.0f));
+    const GroundMove move = compose(inverse(root_of(clip, from)), root_of(clip, from + kMatchStep));
+    return {move.way / kMatchStep, move.yaw / kMatchStep};
+}
+
+bool touches(const MatchClip& clip, std::size_t foot, float time) {
+    const auto& contacts = clip.contacts[foot];
+    return std::any_of(contacts.begin(), contacts.end(), [time](const ClipContact& contact) {
+        return time >= contact.begin && time <= contact.end;
+    });
+}
+
+/// The clip's pose, and what it is `earlier` [s] before.
+void sample_clip_pose(
+    const MatchContext& context, const MotionMatchState& state, float earlier, LocalPose& pose) {
+    pose = context.skeleton.rest;
+    sample_match_pose(
+        context.database, context.assets, {state.clip, std::max(state.time - earlier, 0.0f)}, pose);
+}
+
+void apply_offsets(
+    const MatchContext& context, const MotionMatchState& state, float clock, LocalPose& pose) {
+    const MatchDatabase& database = context.database;
+    const float blend = context.match.blend;
+    for (std::size_t i = 0; i < std::min(state.turns.size(), database.turning.size()); ++i) {
+        Quat& rotation = pose.rotations[database.turning[i]];
+        rotation = apply_turn(state.turns[i], rotation, blend, clock);
+    }
+    for (std::size_t i = 0; i < std::min(state.shifts.size(), database.moving.size()); ++i) {
+        Vec3& translation = pose.translations[database.moving[i]];
+        translation = apply_shift(state.shifts[i], translation, blend, clock);
+    }
+}
+
+/// The displayed pose before the feet are placed, or what it was `earlier` [s] ago.
+void sample_shown(
+    const MatchContext& context, const MotionMatchState& state, float earlier, LocalPose& pose) {
+    sample_clip_pose(context, state, earlier, pose);
+    if (state.blending != 0) {
+        apply_offsets(context, state, state.clock - earlier, pose);
+    }
+}
+
+FootAim find_aim(
+    const MatchContext& context, const MotionMatchState& state, std::size_t foot,
+    const LocalPose& pose) {
+    const MatchClip& clip = playing(context, state);
+    const WalkLeg& leg = context.database.body.legs[foot];
+    const Vec3 heel = heel_offset(context.skeleton, leg) - ball_offset(context.skeleton, leg);
+    // A foot on the ground stays there if it has to be there soon.
+    const bool contact =
+        touches(clip, foot, state.time)
+        || (state.feet[foot].planted != 0 && touches(clip, foot, state.time + kContactGap));
+    return {
+        find_foot(context.skeleton, leg, pose), root_of(clip, state.time), heel, leg.ball.y,
+        contact};
+}
+
+/// How the foot of the clip that plays moves, in the world.
+FootRate aim_rate(
+    const MatchContext& context, const MotionMatchState& state, std::size_t foot,
+    const Transform& transform) {
+    thread_local LocalPose pose;
+    const MatchClip& clip = playing(context, state);
+    const GroundMove back = inverse(root_of(clip, state.time));
+    std::array<FootPoint, 2> points{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const float time = std::max(state.time - static_cast<float>(i) * kVelocitySpan, 0.0f);
+        pose = context.skeleton.rest;
+        sample_match_pose(context.database, context.assets, {state.clip, time}, pose);
+        const FootPoint local = find_foot(context.skeleton, context.database.body.legs[foot], pose);
+        const GroundMove root = compose(back, root_of(clip, time));
+        const GroundMove at = compose(root, {{local.place.x, local.place.z}, 0});
+        points[i].place = {at.way.x, local.place.y, at.way.y};
+        points[i].rotation = rotation_about({0, 1, 0}, root.yaw) * local.rotation;
+    }
+    return rate_between(points[1], points[0], kVelocitySpan, transform);
+}
+
+void end_blend(MotionMatchState& state) {
+    state.blending = 0;
+    state.clock = 0;
+    state.drift = Vec2(0);
+    state.drift_turn = 0;
+    state.turns = {};
+    state.shifts = {};
+}
+
+/// Offsets of the displayed pose from that of the next place.
+void capture_pose(const MatchContext& context, const MatchPlace& next, MotionMatchState& state) {
+    thread_local LocalPose shown;
+    thread_local LocalPose shown_earlier;
+    thread_local LocalPose target;
+    thread_local LocalPose target_earlier;
+    sample_shown(context, state, 0, shown);
+    sample_shown(context, state, kVelocitySpan, shown_earlier);
+    const GroundMove rate = root_rate(playing(context, state), state.time);
+    const float left = state.blending != 0 ? fading_share(context.match.blend, state.clock) : 0;
+    const Vec2 way = rate.way + left * state.drift;
+    const float turn = rate.yaw + left * state.drift_turn;
+    state.clip = next.clip;
+    state.time = next.time;
+    sample_clip_pose(context, state, 0, target);
+    sample_clip_pose(context, state, kVelocitySpan, target_earlier);
+    const GroundMove next_rate = root_rate(playing(context, state), state.time);
+    end_blend(state);
+    for (const std::uint16_t j : context.database.turning) {
+        state.turns.push_back(inertial_turn(
+            shown.rotations[j], shown_earlier.rotations[j], target.rotations[j],
+            target_earlier.rotations[j], kVelocitySpan));
+    }
+    for (const std::uint16_t j : context.database.moving) {
+        state.shifts.push_back(inertial_shift(
+            shown.translations[j], shown_earlier.translations[j], target.translations[j],
+            target_earlier.translations[j], kVelocitySpan));
+    }
+    state.drift = way - next_rate.way;
+    state.drift_turn = turn - next_rate.yaw;
+    state.blending = 1;
+}
+
+void place_feet(const MatchContext& context, const Transform& transform, MotionMatchState& state) {
+    thread_local LocalPose pose;
+    sample_clip_pose(context, state, 0, pose);
+    for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
+        place_foot(find_aim(context, state, i, pose), transform, state.feet[i]);
+    }
+}
+
+void begin_transition(
+    const MatchContext& context, const MatchPlace& next, const Transform& transform,
+    MotionMatchState& state) {
+    ++state.transitions;
+    if (!(context.match.blend > 0)) {
+        end_blend(state);
+        state.clip = next.clip;
+        state.time = next.time;
+        state.cut = 1;
+        place_feet(context, transform, state);
+        return;
+    }
+    capture_pose(context, next, state);
+    thread_local LocalPose pose;
+    sample_clip_pose(context, state, 0, pose);
+    for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
+        capture_foot(
+            find_aim(context, state, i, pose), transform, aim_rate(context, state, i, transform),
+            state.feet[i]);
+    }
+}
+
+MatchWish find_wish(const MatchContext& context, const MoveIntent& intent) {
+    MatchWish wish;
+    const Vec2 velocity(intent.velocity.x, intent.velocity.z);
+    const Vec2 facing(intent.facing.x, intent.facing.z);
+    wish.velocity =
+        is_finite(intent.velocity) ? glm::clamp(velocity, Vec2(-1e3f), Vec2(1e3f)) : Vec2(0);
+    wish.facing = is_finite(intent.facing) ? facing : Vec2(0);
+    wish.response = std::max(finite_or(context.match.response, 0.22f), 0.02f);
+    wish.acceleration = std::max(finite_or(context.match.acceleration, 3.0f), 0.1f);
+    wish.turn_speed = std::max(finite_or(context.match.turn_speed, 2.2f), 0.05f);
+    return wish;
+}
+
+MatchRoot current_root(
+    const MatchContext& context, const MotionMatchState& state, const Transform& transform) {
+    return {
+        {transform.position.x, transform.position.z},
+        heading_of(context, transform.rotation),
+        state.velocity,
+        state.pull,
+        state.turn};
+}
+
+/// Turn toward the wanted path that the clip does not make [rad/s].
+float find_steering(const MatchContext& context, const MatchRow& query, const MatchRow& played) {
+    const MatchDatabase& database = context.database;
+    const auto number = [&](const MatchRow& row, std::size_t k) {
+        return database.scale[k] > 0 ? row[k] / database.scale[k] + database.mean[k] : 0.0f;
+    };
+    const auto heading = [&](const MatchRow& row) {
+        return std::atan2(number(row, kMatchPath + 6), number(row, kMatchPath + 7));
+    };
+    const float angle = std::remainder(heading(query) - heading(played), 2 * kPi);
+    const float time = static_cast<float>(kMatchAhead[1]) * kMatchStep;
+    const float most = std::max(context.match.steer, 0.0f);
+    return std::clamp(angle / time, -most, most);
+}
+
+void search(
+    const MatchContext& context, const MoveIntent& intent, const Transform& transform,
+    MotionMatchState& state) {
+    const MatchDatabase& database = context.database;
+    const MatchRow query = make_match_query(context, intent, state, transform);
+    const bool first = state.started == 0;
+    const bool goes_on = !first && !is_over(context, state);
+    const float cost = row_distance(database.frame_at({state.clip, state.time}), query);
+    const float better = std::clamp(finite_or(context.match.better, 0.1f), 0.0f, 1.0f);
+    const float limit = cost > kGoodEnough ? cost * (1 - better) : 0.0f;
+    const RowMatch found = find_nearest_row_boxes(database.rows, query, goes_on ? limit : INFINITY);
+    state.cost = cost;
+    if (found.row != kNoMatch) {
+        const MatchPlace next = database.place_of(found.row);
+        const bool is_same =
+            goes_on && next.clip == state.clip && std::abs(next.time - state.time) < kSameFrame;
+        if (!is_same) {
+            state.cost = found.distance;
+            if (first) {
+                state.clip = next.clip;
+                state.time = next.time;
+            } else {
+                begin_transition(context, next, transform, state);
+            }
+        }
+    }
+    const bool can_steer = glm::length(state.velocity) > kSteerSpeed;
+    const MatchRow& played = database.frame_at({state.clip, state.time});
+    state.steer_aim = can_steer ? find_steering(context, query, played) : 0.0f;
+}
+
+/// Moves ahead in the clip, and the character with it.
+void advance(
+    const MatchContext& context, const MoveIntent& intent, float dt, Transform& transform,
+    MotionMatchState& state) {
+    const MatchClip& clip = playing(context, state);
+    const GroundMove before = root_of(clip, state.time);
+    state.time = std::min(state.time + dt, clip.duration);
+    GroundMove move = compose(inverse(before), root_of(clip, state.time));
+    if (state.blending != 0) {
+        const float blend = context.match.blend;
+        const float way = fading_way(blend, state.clock + dt) - fading_way(blend, state.clock);
+        move.way += way * state.drift;
+        move.yaw += way * state.drift_turn;
+        state.clock += dt;
+    }
+    state.steering += (1 - std::exp(-dt / kSteerResponse)) * (state.steer_aim - state.steering);
+    move.yaw += state.steering * dt;
+    const Vec3 way =
+        transform.rotation * (uniform_scale(transform) * Vec3(move.way.x, 0, move.way.y));
+    transform.position += way;
+    if (move.yaw != 0) {
+        transform.rotation =
+            normalize_or_identity(transform.rotation * rotation_about({0, 1, 0}, move.yaw));
+    }
+    state.velocity = Vec2(way.x, way.z) / dt;
+    state.turn = move.yaw / dt;
+    MatchRoot wanted = current_root(context, state, transform);
+    step_match_root(find_wish(context, intent), std::min(dt, 0.1f), wanted);
+    state.pull = wanted.pull;
+    thread_local LocalPose pose;
+    sample_clip_pose(context, state, 0, pose);
+    const float reach = kFootReach * leg_length(context.database.body) * uniform_scale(transform);
+    for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
+        step_foot(
+            find_aim(context, state, i, pose), transform, context.match.blend, reach, dt,
+            state.feet[i]);
+    }
+    if (state.blending != 0 && state.clock >= context.match.blend) {
+        end_blend(state);
+    }
+}
+
+bool is_usable(const Transform& transform) {
+    const Quat& q = transform.rotation;
+    return is_finite(transform.position) && std::isfinite(q.w + q.x + q.y + q.z)
+           && is_finite(transform.scale);
+}
+
+}  // namespace
+
+MatchRow make_match_query(
+    const MatchContext& context, const MoveIntent& intent, const MotionMatchState& state,
+    const Transform& transform) {
+    const MatchDatabase& database = context.database;
+    MatchRow query = database.frame_at({state.clip, state.time});
+    MatchRoot root = current_root(context, state, transform);
+    const Vec2 start = root.place;
+    const float heading = root.heading;
+    const float yaw = heading - database.body.heading;
+    const float size = 1 / uniform_scale(transform);
+    const MatchWish wish = find_wish(context, intent);
+    std::size_t step = 0;
+    for (std::size_t k = 0; k < kMatchAhead.size(); ++k) {
+        for (; step < kMatchAhead[k]; ++step) {
+            step_match_root(wish, kForecastStep, root);
+        }
+        const Vec2 way = size * compose({{0, 0}, -yaw}, {root.place - start, 0}).way;
+        const float turn = root.heading - heading;
+        const std::array<float, 4> numbers = {way.x, way.y, std::sin(turn), std::cos(turn)};
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const std::size_t at = kMatchPath + 4 * k + i;
+            query[at] = (numbers[i] - database.mean[at]) * database.scale[at];
+        }
+    }
+    return query;
+}
+
+void find_match_pose(
+    const MatchContext& context, const MotionMatchState& state, const Transform& transform,
+    LocalPose& pose) {
+    sample_shown(context, state, 0, pose);
+    apply_match_feet(context.skeleton, context.database.body, state.feet, transform, pose);
+}
+
+void step_motion_match(
+    const MatchContext& context, const MoveIntent& intent, float dt, MotionMatchState& state,
+    Transform& transform) {
+    if (context.database.rows.count == 0 || !is_usable(transform)) {
+        return;
+    }
+    state.cut = 0;
+    if (state.started == 0 || state.clip >= context.database.clips.size()) {
+        state.started = 0;
+        state.clip = 0;
+        state.time = 0;
+        search(context, intent, transform, state);
+        state.started = 1;
+        state.root = transform.position;
+        place_feet(context, transform, state);
+    }
+    if (glm::distance(state.root, transform.position) > kMoved) {
+        end_blend(state);
+        state.velocity = state.pull = Vec2(0);
+        place_feet(context, transform, state);
+    }
+    const float interval = std::max(finite_or(context.match.interval, 0.1f), kShortestInterval);
+    float left = std::isfinite(dt) ? std::clamp(dt, 0.0f, kLongestStep) : 0.0f;
+    while (left > 0) {
+        if (state.since_search >= interval - kSearchEarly || is_over(context, state)) {
+            state.since_search = 0;
+            search(context, intent, transform, state);
+        }
+        const float part = left < interval + kSearchEarly ? left : interval;
+        advance(context, intent, part, transform, state);
+        state.since_search += part;
+        left -= part;
+    }
+    state.root = transform.position;
+}
+
+void apply_match_pose(const MatchPose& match, LocalPose& pose) {
+    if (match.pose.size() != pose.size()) {
+        return;
+    }
+    for (const std::uint16_t j : match.turning) {
+        pose.rotations[j] = match.pose.rotations[j];
+    }
+    for (const std::uint16_t j : match.moving) {
+        pose.translations[j] = match.pose.translations[j];
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,83 @@
+#include "systems/animation/matching/motion_match_system.h"
+
+#include "ecs/base/log.h"
+#include "systems/animation/matching/match_step.h"
+#include "systems/animation/matching/match_takes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+// Techniques: char.blend, char.motion-select
+
+namespace limn {
+
+void add_match_states(
+    Query<const MotionMatch, With<Skeleton>, Without<MotionMatchState>> states,
+    Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses, Commands commands) {
+    states.each([&](Entity entity, const MotionMatch& match) {
+        MotionMatchState state;
+        // So that not all characters search in the same step.
+        const float share = 0.618034f * static_cast<float>(entity.index % 4096u);
+        state.since_search =
+            std::max(finite_or(match.interval, 0.0f), 0.0f) * (share - std::floor(share));
+        commands.add(entity, std::move(state));
+    });
+    poses.each([&](Entity entity, const MotionMatch&) { commands.add(entity, MatchPose{}); });
+}
+
+void prepare_match_databases(
+    Query<const MotionMatch, const Skeleton> characters, Query<const Walk> walks,
+    Res<const Assets> assets, Res<MatchDatabases> databases) {
+    characters.each([&](const MotionMatch& match, const Skeleton& skeleton) {
+        if (skeleton.skeleton.index >= assets->skeletons.size()
+            || databases->find(skeleton.skeleton, match) != nullptr) {
+            return;
+        }
+        const SkeletonData& bones = assets->skeletons[skeleton.skeleton.index];
+        const Walk* const walk = walks.find<const Walk>(match.walk);
+        std::vector<MatchTake> takes;
+        if (walk != nullptr || match.clips.empty()) {
+            takes = make_match_takes(bones, walk != nullptr ? *walk : Walk{});
+        }
+        auto made = std::make_shared<const MatchDatabase>(
+            make_match_database(bones, *assets, match.clips, std::move(takes), weights_of(match)));
+        if (made->rows.count == 0) {
+            log_warn(
+                "motion match: skeleton {} has no clip longer than 1 s and no legs to walk; it is "
+                "not animated",
+                bones.name);
+        }
+        databases->entries.push_back(
+            {skeleton.skeleton, match.walk, match.clips, weights_of(match), std::move(made)});
+    });
+}
+
+void update_motion_matching(
+    Query<
+        const Skeleton, const MotionMatch, Optional<const MoveIntent>, MotionMatchState, MatchPose,
+        Transform>
+        characters,
+    Res<const Assets> assets, Res<const MatchDatabases> databases,
+    OptionalRes<const FrameTime> time) {
+    const float step = time ? time->step : 0.0f;
+    characters.par_each([&, step](
+                            const Skeleton& skeleton, const MotionMatch& match,
+                            const MoveIntent* intent, MotionMatchState& state, MatchPose& pose,
+                            Transform& transform) {
+        const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
+        if (database == nullptr || database->rows.count == 0) {
+            return;
+        }
+        const MatchContext context = {
+            *assets, assets->skeletons[skeleton.skeleton.index], *database, match};
+        step_motion_match(
+            context, intent != nullptr ? *intent : MoveIntent{}, step, state, transform);
+        find_match_pose(context, state, transform, pose.pose);
+        pose.turning = database->turning;
+        pose.moving = database->moving;
+    });
+}
+
+}  // namespace limn
