@@ -5,6 +5,7 @@
 #include "content/make/models/simplify_mesh.h"
 #include "content/make/person/person_bends.h"
 #include "content/make/person/person_clips.h"
+#include "content/make/person/person_cloth.h"
 #include "content/make/person/person_parts.h"
 
 #include <algorithm>
@@ -15,7 +16,11 @@ namespace limn {
 namespace {
 
 constexpr float kSmooth = kPi;
-constexpr float kClothCrease = 1.25f;  ///< hems are sharp [rad]
+constexpr float kThinning = 0.0016f;      ///< what details of cloth may move [m]
+constexpr float kSkinThinning = 0.0004f;  ///< likewise of arms
+constexpr float kClothCrease = 1.25f;     ///< hems are sharp [rad]
+constexpr float kTrimCrease = 0.9f;
+constexpr float kShoeCrease = 0.9f;
 
 MeshData finish_half(BodyMesh& half, const PersonFrame& frame, float crease, bool folds) {
     half.fair(4);
@@ -27,20 +32,36 @@ MeshData finish_half(BodyMesh& half, const PersonFrame& frame, float crease, boo
     return half.finish(frame, crease);
 }
 
+/// A garment and what is sewn onto it, which keeps all its triangles.
+MeshData finish_garment(BodyMesh& half, BodyMesh& trims, const PersonFrame& frame) {
+    MeshData mesh = finish_half(half, frame, kClothCrease, true);
+    thin_out(mesh, kThinning, kClothCrease);
+    if (!trims.vertices.empty()) {
+        append_part(mesh, finish_half(trims, frame, kTrimCrease, true));
+    }
+    return mesh;
+}
+
 MeshData make_skin(const PersonFrame& frame) {
     MeshData mesh = make_person_head(frame);
     const PersonHems hems = person_hems(frame);
-    BodyMesh limbs;
-    add_arm(limbs, frame, hems.sleeve - 0.045f);
+    BodyMesh arm;
+    add_arm(arm, frame, hems.sleeve - 0.045f);
+    MeshData arms = finish_half(arm, frame, kSmooth, false);
+    thin_out(arms, kSkinThinning, kSmooth);
+    append_part(mesh, arms);
     if (frame.look.shape.legs != PersonLegwear::Trousers) {
-        add_leg(limbs, frame, hems.leg + 0.06f);
+        BodyMesh leg;
+        add_leg(leg, frame, hems.leg + 0.06f);
+        append_part(mesh, finish_half(leg, frame, kSmooth, false));
     }
-    append_part(mesh, finish_half(limbs, frame, kSmooth, false));
     return mesh;
 }
 
 MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     BodyMesh mesh;
+    BodyMesh trims;
+    MeshData whole;
     switch (part) {
     case PersonPart::All:
         break;
@@ -53,18 +74,25 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     case PersonPart::Hair:
         add_hair(mesh, frame);
         mesh.face_outwards();
-        return mesh.finish(frame, kSmooth);
+        whole = mesh.finish(frame, kSmooth);
+        if (!whole.indices.empty()) {
+            thin_out(whole, 0.5f * kThinning, kSmooth);
+        }
+        return whole;
     case PersonPart::Shirt:
         add_shirt(mesh, frame);
-        return finish_half(mesh, frame, kClothCrease, true);
+        add_shirt_trims(trims, frame);
+        return finish_garment(mesh, trims, frame);
     case PersonPart::Trousers:
         add_trousers(mesh, frame);
-        return finish_half(mesh, frame, kClothCrease, true);
+        add_trouser_trims(trims, frame);
+        return finish_garment(mesh, trims, frame);
     case PersonPart::Shoes:
         add_shoe(mesh, frame);
-        return finish_half(mesh, frame, 0.9f, false);
+        whole = finish_half(mesh, frame, kShoeCrease, false);
+        thin_out(whole, kThinning, kShoeCrease);
+        return whole;
     }
-    MeshData whole;
     for (const PersonPart each :
          {PersonPart::Skin, PersonPart::Eyes, PersonPart::Hair, PersonPart::Shirt,
           PersonPart::Trousers, PersonPart::Shoes}) {

@@ -8,9 +8,11 @@
 
 namespace limn {
 
-// A dressed adult: a low-polygon human for crowds, facing +z, standing on y = 0, arms 45 degrees
+// A dressed person: a low-polygon human for crowds, facing +z, standing on y = 0, arms 45 degrees
 // below the horizontal. It wears the head of head.h with fewer triangles and closed lips, hands
-// with five fingers, and clothes that are closed shells around the body. The skeleton
+// with five fingers, and clothes that are closed shells around the body: what is sewn onto them
+// (collars, plackets, pockets, belt loops) are small shells of their own, which levels of detail
+// leave out. Below a height of 1.5 m the proportions are those of a child. The skeleton
 // (person_skeleton.h) has 60 joints with the names of a person (humanoid.h), with anatomical
 // limits. Every person is another one: what is left open is chosen by `seed`.
 //
@@ -24,7 +26,8 @@ namespace limn {
 enum class PersonPart : std::uint8_t { All, Skin, Eyes, Hair, Shirt, Trousers, Shoes };
 enum class PersonSex : std::uint8_t { Any, Woman, Man };
 enum class PersonHair : std::uint8_t { Any, Short, Bob, Long, Bun, Bald };
-enum class PersonLegwear : std::uint8_t { Any, Trousers, Shorts, Skirt };
+enum class PersonTop : std::uint8_t { Any, Tee, Shirt, Jumper, Coat };
+enum class PersonLegwear : std::uint8_t { Any, Trousers, Shorts, Skirt, Dress };
 enum class PersonSleeves : std::uint8_t { Any, Short, Long };
 
 struct PersonShape {
@@ -36,13 +39,14 @@ struct PersonShape {
     float age = -1.0f;
     float melanin = -1.0f;
     PersonHair hair = PersonHair::Any;
+    PersonTop top = PersonTop::Any;
     PersonLegwear legs = PersonLegwear::Any;
     PersonSleeves sleeves = PersonSleeves::Any;
     Vec3 hair_color = {0, 0, 0};
     Vec3 shirt_color = {0, 0, 0};
     Vec3 trousers_color = {0, 0, 0};
     Vec3 shoe_color = {0, 0, 0};
-    int head_triangles = 3600;
+    int head_triangles = 2600;
     int triangles = 0;
 };
 
@@ -56,14 +60,16 @@ LIMN_FIELDS(PersonShape) {
     LIMN_FIELD(age, "0: twenty years, 1: seventy; -1: by the seed", "", -1, 1);
     LIMN_FIELD(melanin, "color of the skin, 0: fair, 1: dark; -1: by the seed", "", -1, 1);
     LIMN_FIELD(hair, .doc = "hair style", .values = "any short bob long bun bald");
-    LIMN_FIELD(legs, .doc = "worn on the legs", .values = "any trousers shorts skirt");
+    LIMN_FIELD(top, .doc = "worn on the trunk", .values = "any tee shirt jumper coat");
+    LIMN_FIELD(legs, .doc = "worn on the legs", .values = "any trousers shorts skirt dress");
     LIMN_FIELD(sleeves, .doc = "of the shirt", .values = "any short long");
     LIMN_FIELD(
         hair_color, .doc = "linear; black: by seed and age", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(shirt_color, .doc = "linear; black: by the seed", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(
-        trousers_color, .doc = "linear, of shorts or a skirt as well; black: by the seed", .min = 0,
-        .max = 1, .color = true);
+        trousers_color,
+        .doc = "linear, of shorts or a skirt as well; black: by the seed, of a dress: the shirt's",
+        .min = 0, .max = 1, .color = true);
     LIMN_FIELD(shoe_color, .doc = "linear; black: by the seed", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(head_triangles, "of face and neck, approximately", "", 500, 24000);
     LIMN_FIELD(

@@ -144,7 +144,7 @@ Vec3 trunk_point(
     }
     p.y -= 0.030f * tilt * std::cos(angle);
     p.z += 0.006f * lean;
-    const float woman = 1 - frame.man;
+    const float woman = (1 - frame.man) * (1 - frame.child);
     const float fullness = 1 + 0.25f * frame.build;
     const float fall = height < 1.245f ? 0.062f + 0.07f * drape : 0.062f;
     if (c > 0) {

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -58,7 +59,9 @@ void curl_fingers(KeyPose& pose, const PersonFrame& frame, float degrees) {
 /// From the rest pose to arms that hang.
 void lower_arms(KeyPose& pose, const PersonFrame& frame, float more = 0) {
     pose.turn(SideJoint::Shoulder, {0, 0, 1}, -4);
-    pose.turn(SideJoint::UpperArm, {0, 0, 1}, -31 + more);
+    const float girth = 4 * std::max(frame.build, 0.0f);
+    const float coat = frame.look.shape.top == PersonTop::Coat ? 3.0f : 0.0f;
+    pose.turn(SideJoint::UpperArm, {0, 0, 1}, -36 + girth + coat + more);
     pose.turn(SideJoint::UpperArm, {1, 0, 0}, 5);
     pose.turn(SideJoint::Forearm, -frame.forearm.back, 13);
 }
@@ -68,7 +71,10 @@ KeyPose standing(const PersonFrame& frame, float phase) {
     const float sway = std::sin(0.5f * phase);
     KeyPose pose;
     lower_arms(pose, frame, 0.7f * breath);
-    curl_fingers(pose, frame, 6 + 1.5f * sway);
+    curl_fingers(pose, frame, 13 + 1.5f * sway);
+    pose.turn(SideJoint::Thumb1, frame.hand.back, 16);
+    pose.turn(SideJoint::Hand, frame.forearm.along, -14);
+    pose.turn(SideJoint::Thigh, {0, 1, 0}, 7);
     pose.turn(PersonJoint::Chest, {1, 0, 0}, -0.7f * breath);
     pose.turn(PersonJoint::UpperChest, {1, 0, 0}, -0.7f * breath);
     pose.turn(PersonJoint::Head, {1, 0, 0}, 1.2f * std::sin(phase - 0.6f));

@@ -18,9 +18,9 @@ namespace {
 // Lengths in the space of the head are centimeters.
 
 constexpr Vec3 kSkull = {0, 5.5f, -0.5f};
-constexpr int kHairColumns = 48;
+constexpr int kHairColumns = 44;
 constexpr int kHairRows = 13;
-constexpr int kInnerRows = 6;  ///< of the inner side, from the edge up
+constexpr int kInnerRows = 3;  ///< of the inner side, from the edge up
 
 struct EdgeKey {
     float angle;   ///< from the front [degrees]
@@ -66,8 +66,9 @@ float edge_height(std::span<const EdgeKey> keys, float angle) {
     while (i + 1 < keys.size() && keys[i].angle < at) {
         ++i;
     }
-    return glm::mix(
+    const float height = glm::mix(
         keys[i - 1].height, keys[i].height, glm::smoothstep(keys[i - 1].angle, keys[i].angle, at));
+    return height + 0.3f * gradient_noise(Vec2(7 * angle, height), 5);
 }
 
 std::span<const EdgeKey> edge_keys(PersonHair style) {
@@ -118,7 +119,8 @@ class HairBuilder {
         float thick = 0;
         switch (style_) {
         case PersonHair::Short:
-            thick = glm::mix(0.75f, 1.5f, top) + 0.5f * front * top;
+            thick = glm::mix(0.65f, 1.6f, top) + 0.9f * front * top * t
+                    + 0.35f * std::sin(angle + 0.9f) * top * front;
             break;
         case PersonHair::Bun:
             thick = 0.65f;
@@ -128,9 +130,13 @@ class HairBuilder {
                     + 0.8f * std::exp(-square((std::abs(angle) - 1.6f) / 0.4f))
                           * glm::smoothstep(0.3f, 0.55f, t);
         }
+        // Locks of short hair lie across the head, from a parting on one side.
+        const bool is_short = style_ == PersonHair::Short;
+        const float turn = is_short ? angle + 1.1f * t : angle;
+        const float fine = is_short ? 7.5f : 5.0f;
         const float locks = gradient_noise(
-            Vec2(5.0f * std::sin(angle) + 9, 5.0f * std::cos(angle) + 2.2f * t), frame_.look.folds);
-        return thick * (1 + 0.22f * locks);
+            Vec2(fine * std::sin(turn) + 9, fine * std::cos(turn) + 2.2f * t), frame_.look.folds);
+        return thick * (1 + (is_short ? 0.5f : 0.26f) * locks);
     }
 
     struct HairPoint {
@@ -268,22 +274,13 @@ void add_hair(BodyMesh& mesh, const PersonFrame& frame) {
 }
 
 void add_eyes(BodyMesh& mesh, const PersonFrame& frame) {
-    constexpr int kColumns = 14;
+    constexpr int kColumns = 12;
     struct EyeRing {
         float angle;  ///< from the axis [degrees]
         int color;    ///< 0 pupil, 1 iris, 2 rim of the iris, 3 white
     };
-    constexpr std::array<EyeRing, 10> kRings = {
-        {{8, 0},
-         {9.5f, 1},
-         {22, 1},
-         {25.5f, 2},
-         {28, 3},
-         {45, 3},
-         {65, 3},
-         {90, 3},
-         {120, 3},
-         {150, 3}}};
+    constexpr std::array<EyeRing, 8> kRings = {
+        {{8, 0}, {9.5f, 1}, {22, 1}, {25.5f, 2}, {28, 3}, {45, 3}, {68, 3}, {105, 3}}};
     const Vec3 white(0.50f, 0.47f, 0.45f);
     const std::array<Vec3, 4> colors = {
         {Vec3(0.004f), frame.look.iris_color, 0.35f * frame.look.iris_color, white}};
@@ -315,7 +312,7 @@ void add_eyes(BodyMesh& mesh, const PersonFrame& frame) {
             }
             last = ring;
         }
-        mesh.cap(last, Vec3(0, 0, -0.001f), 0.005f, true);
+        mesh.cap(last, Vec3(0, 0, -0.006f), 0.005f, true);
     }
 }
 

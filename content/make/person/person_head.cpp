@@ -14,6 +14,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 // Techniques: engine.lod-mesh
 
@@ -22,7 +24,7 @@ namespace limn {
 namespace {
 
 /// Rings that continue the neck down into the collar.
-constexpr int kNeckRings = 2;
+constexpr int kNeckRings = 3;
 
 /// Skin of a head as triangles of shared vertices, at the reference height.
 struct WovenHead {
@@ -85,11 +87,13 @@ void add_neck(WovenHead& head, const PersonFrame& frame, std::vector<std::uint32
         for (const std::uint32_t v : ring) {
             const Vec3 p = head.positions[v];
             const float angle = std::atan2(p.x, p.z + 0.015f);
-            const Vec3 base = trunk_point(frame, 1.43f, angle, -0.014f);
-            const Vec3 out(base.x, 0, base.z);
+            const float front = square(0.5f + 0.5f * std::cos(angle));
+            const Vec3 edge = trunk_point(frame, 1.468f - 0.03f * front, angle, -0.003f);
+            const Vec3 base = trunk_point(frame, 1.43f - 0.02f * front, angle, -0.012f);
             lower.push_back(static_cast<std::uint32_t>(head.positions.size()));
             head.positions.push_back(
-                glm::mix(p, base, t) - 0.012f * 4 * t * (1 - t) * normalize_or(out, Vec3(0)));
+                r == kNeckRings ? base
+                                : glm::mix(p, edge, static_cast<float>(r) / (kNeckRings - 1)));
             head.colors.push_back(skin);
             head.charts.push_back(head.charts[v] + Vec2(0, 3 * t));
         }
@@ -156,10 +160,67 @@ WovenHead weave_head(const PersonFrame& frame) {
     return head;
 }
 
+/// Whether two triangles have an edge in the same direction.
+bool has_crowded_edge(const WovenHead& head, const std::vector<std::uint32_t>& indices) {
+    std::map<std::array<float, 3>, std::uint32_t> places;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    const auto place = [&](std::size_t i) {
+        const Vec3& p = head.positions[indices[i]];
+        return places.try_emplace({p.x, p.y, p.z}, indices[i]).first->second;
+    };
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = place(i + k);
+            const std::uint32_t b = place(i + (k + 1) % 3);
+            if (a != b && !edges.emplace(a, b).second) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// 1 at the mouth and the eyes, 0 far from them.
+float near_features(const PersonFrame& frame, const Vec3& p) {
+    const Vec3 q = (p - frame.head_origin) / frame.head_scale;
+    const Vec3 side = q * Vec3(q.x < 0 ? -1 : 1, 1, 1);
+    return std::exp(-square(glm::distance(side, Vec3(0.018f, -0.033f, 0.100f)) / 0.024f))
+           + std::exp(-square(glm::distance(side, Vec3(0.036f, 0.035f, 0.083f)) / 0.024f));
+}
+
+/// Adds the normals of the triangles that are left where a lid or the corner of the mouth has few:
+/// those of the fine skin alone would show each of them.
+void blend_normals(WovenHead& head, const PersonFrame& frame) {
+    std::vector<Vec3> own(head.positions.size(), Vec3(0));
+    for (std::size_t i = 0; i < head.indices.size(); i += 3) {
+        const auto at = [&](std::size_t k) { return head.positions[head.indices[i + k]]; };
+        const Vec3 area = glm::cross(at(1) - at(0), at(2) - at(0));
+        for (std::size_t k = 0; k < 3; ++k) {
+            own[head.indices[i + k]] += area;
+        }
+    }
+    std::vector<float> share(own.size());
+    for (std::size_t v = 0; v < own.size(); ++v) {
+        share[v] = std::min(near_features(frame, head.positions[v]), 1.0f);
+        head.normals[v] = normalize_or(head.normals[v], Vec3(0))
+                          + 3.0f * share[v] * normalize_or(own[v], Vec3(0));
+        head.normals[v] = normalize_or(head.normals[v], Vec3(0));
+    }
+    std::vector<Vec3> sums = head.normals;
+    for (std::size_t i = 0; i < head.indices.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = head.indices[i + k];
+            sums[v] += 0.5f * share[v] * head.normals[head.indices[i + (k + 1) % 3]];
+        }
+    }
+    head.normals = std::move(sums);
+}
+
 /// Collapses edges where it shows least: in a space where the face is larger, and smaller what is
 /// under hair or clothes.
 void reduce(WovenHead& head, const PersonFrame& frame) {
     constexpr float kMaxHeadError = 0.05f;
+    constexpr int kMaxAttempts = 64;
     const bool bald = frame.look.shape.hair == PersonHair::Bald;
     std::vector<Vec3> warped;
     for (const Vec3& p : head.positions) {
@@ -175,12 +236,22 @@ void reduce(WovenHead& head, const PersonFrame& frame) {
         warped.push_back(
             q * (1 + 1.2f * face + 0.5f * (mouth + eye)) * (1 - 0.6f * std::max(hidden, below)));
     }
-    std::vector<std::uint32_t> indices(head.indices.size());
-    const std::size_t target = 3 * static_cast<std::size_t>(frame.look.shape.head_triangles);
-    indices.resize(meshopt_simplify(
-        indices.data(), head.indices.data(), head.indices.size(), &warped[0].x, warped.size(),
-        sizeof(Vec3), target, kMaxHeadError));
+    std::vector<std::uint32_t> indices;
+    // A collapse may join two layers of a lip or an ear: then a few triangles more or fewer.
+    for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+        const int more = (attempt % 2 == 0 ? 12 : -12) * ((attempt + 1) / 2);
+        const auto target =
+            static_cast<std::size_t>(3 * std::max(frame.look.shape.head_triangles + more, 1));
+        indices.resize(head.indices.size());
+        indices.resize(meshopt_simplify(
+            indices.data(), head.indices.data(), head.indices.size(), &warped[0].x, warped.size(),
+            sizeof(Vec3), target, kMaxHeadError));
+        if (!has_crowded_edge(head, indices)) {
+            break;
+        }
+    }
     head.indices = std::move(indices);
+    blend_normals(head, frame);
 }
 
 /// Closed strips along the rows of the grid above the eyes, on the fine skin.
@@ -247,7 +318,7 @@ Vec2 chart_uv(const Vec2& chart) {
 HeadShape person_head_shape(const PersonFrame& frame) {
     HeadShape shape;
     shape.age = frame.look.shape.age;
-    shape.sex = frame.look.sex;
+    shape.sex = frame.look.sex * (1 - 0.8f * frame.child);
     shape.build = frame.look.shape.build;
     shape.asymmetry = frame.look.asymmetry;
     shape.scalp_shade = frame.look.shape.hair == PersonHair::Bald ? 0.25f : 0.7f;

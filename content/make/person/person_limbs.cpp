@@ -306,11 +306,10 @@ class HandBuilder {
                              sides[k + 1], front[2 * k + 2], front[2 * k + 1], front[2 * k]};
             const std::array<float, 3> l = finger_lengths(k + 1);
             const float two = l[0] + l[1];
-            const std::array<float, 11> rings = {
-                0.66f * l[0],       l[0] - 0.006f,       l[0],
-                l[0] + 0.006f,      l[0] + 0.55f * l[1], two - 0.004f,
-                two + 0.004f,       two + 0.42f * l[2],  two + 0.66f * l[2],
-                two + 0.84f * l[2], two + 0.95f * l[2]};
+            const std::array<float, 9> rings = {
+                0.68f * l[0],        l[0] - 0.006f,      l[0] + 0.004f,
+                l[0] + 0.55f * l[1], two - 0.004f,       two + 0.004f,
+                two + 0.55f * l[2],  two + 0.82f * l[2], two + 0.95f * l[2]};
             add_finger_tube(k + 1, base, rings, 0, 1);
         }
     }

@@ -122,6 +122,13 @@ PersonHair choose_hair(Random& random, bool woman, float age) {
     return draw < 0.12f + 0.2f * age ? PersonHair::Bald : PersonHair::Short;
 }
 
+PersonTop choose_top(float draw, PersonSleeves sleeves) {
+    if (sleeves == PersonSleeves::Short) {
+        return draw < 0.6f ? PersonTop::Tee : PersonTop::Shirt;
+    }
+    return draw < 0.45f ? PersonTop::Shirt : draw < 0.8f ? PersonTop::Jumper : PersonTop::Coat;
+}
+
 }  // namespace
 
 Vec3 skin_tone(float melanin) {
@@ -175,9 +182,27 @@ PersonLook choose_person(const PersonShape& shape) {
     chosen.trousers_color = chooser.color(kTrousersColors, shape.trousers_color);
     chosen.shoe_color = chooser.color(kShoeColors, shape.shoe_color);
     const bool draws_tucked = chooser.chance(0.3f);
-    look.tucked = draws_tucked || chosen.legs == PersonLegwear::Skirt;
     look.shirt_length = chooser.number(0, 0, 0.02f, 0.07f);
     look.folds = random.word();
+    const float top = random.uniform();
+    const bool dressed = random.uniform() < 0.4f;
+    if (shape.top == PersonTop::Any) {
+        chosen.top = choose_top(top, chosen.sleeves);
+    }
+    if (shape.legs == PersonLegwear::Any && chosen.legs == PersonLegwear::Skirt && dressed) {
+        chosen.legs = PersonLegwear::Dress;
+    }
+    if (chosen.legs == PersonLegwear::Dress) {
+        chosen.top = shape.top == PersonTop::Any ? PersonTop::Tee : chosen.top;
+        chosen.trousers_color =
+            shape.trousers_color == Vec3(0) ? chosen.shirt_color : shape.trousers_color;
+    }
+    const bool hangs = chosen.top == PersonTop::Jumper || chosen.top == PersonTop::Coat;
+    look.tucked = chosen.legs == PersonLegwear::Dress
+                  || (!hangs && (draws_tucked || chosen.legs == PersonLegwear::Skirt));
+    if (chosen.top == PersonTop::Coat && shape.sleeves == PersonSleeves::Any) {
+        chosen.sleeves = PersonSleeves::Long;
+    }
     return look;
 }
 

@@ -1,10 +1,12 @@
 #include "content/make/person/person_mesh.h"
 
 #include "content/bake/tangents.h"
+#include "content/make/models/keep_triangles.h"
 #include "content/make/person/person_weights.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +119,7 @@ void BodyMesh::mirror() {
         }
         copy.position.x = -copy.position.x;
         copy.side = static_cast<std::int8_t>(-copy.side);
+        copy.lift.x = -copy.lift.x;
         image[i] = add(copy);
     }
     const std::size_t quad_count = quads.size();
@@ -252,6 +255,28 @@ MeshData BodyMesh::finish(const PersonFrame& frame, float crease) const {
     generate_tangents(mesh);
     update_bounds(mesh);
     return mesh;
+}
+
+void thin_out(MeshData& mesh, float error, float crease) {
+    constexpr float kSpread = 0.15f;  // of what different joints move [m]
+    constexpr float kTint = 0.003f;   // of what has different colors [m]
+    std::vector<Vec3> warped = mesh.positions;
+    for (std::size_t v = 0; v < warped.size(); ++v) {
+        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+            const float turn = 2.4f * static_cast<float>(mesh.skin.joints[i]);
+            const Vec3 way(std::cos(turn), std::sin(1.7f * turn), std::sin(turn));
+            warped[v] += kSpread * mesh.skin.weights[i] * way;
+        }
+        warped[v] += kTint * Vec3(mesh.colors[v]);
+    }
+    const float scale = meshopt_simplifyScale(&warped[0].x, warped.size(), sizeof(Vec3));
+    std::vector<std::uint32_t> indices(mesh.indices.size());
+    indices.resize(meshopt_simplify(
+        indices.data(), mesh.indices.data(), mesh.indices.size(), &warped[0].x, warped.size(),
+        sizeof(Vec3), 0, error / scale));
+    keep_triangles(mesh, std::move(indices));
+    generate_normals(mesh, crease);
+    generate_tangents(mesh);
 }
 
 void append_part(MeshData& mesh, const MeshData& part) {

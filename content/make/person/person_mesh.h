@@ -36,6 +36,7 @@ struct BodyVertex {
     std::int8_t side = 1;  ///< -1: on the right
     bool fair = false;     ///< smoothed by fair()
     float along = 0;       ///< [m]
+    Vec3 lift = {};        ///< where folds move it, a unit vector; 0: along the normal
 };
 
 struct BodyQuad {
@@ -78,6 +79,11 @@ class BodyMesh {
     std::vector<BodyVertex> vertices;
     std::vector<BodyQuad> quads;
 };
+
+/// Collapses edges where neither shape nor skin weights nor colors vary, up to an error of `error`
+/// at the reference height [m]. Vertices that are left keep all but their normals, which are smooth
+/// up to `crease` [rad].
+void thin_out(MeshData& mesh, float error, float crease);
 
 /// Appends `part`, which has the same vertex arrays, to `mesh`; both without morph targets.
 void append_part(MeshData& mesh, const MeshData& part);

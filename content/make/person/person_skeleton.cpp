@@ -249,7 +249,8 @@ PersonFrame measure_person(const PersonShape& shape) {
     PersonFrame frame;
     frame.look = choose_person(shape);
     frame.scale = frame.look.shape.height / kReferenceHeight;
-    frame.man = 0.5f + 0.5f * frame.look.sex;
+    frame.child = 1 - glm::smoothstep(1.18f, 1.48f, frame.look.shape.height);
+    frame.man = std::lerp(0.5f + 0.5f * frame.look.sex, 0.15f, frame.child);
     frame.build = frame.look.shape.build;
     frame.head_scale = 1.0f / std::sqrt(frame.scale);
     frame.head_origin = {0, kReferenceHeight - kCrown * frame.head_scale, 0.018f};

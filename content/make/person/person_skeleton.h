@@ -79,6 +79,7 @@ struct PersonFrame {
     PersonLook look;
     float scale = 1;       ///< from the reference height to the person's
     float man = 1;         ///< 0: a woman's proportions, 1: a man's
+    float child = 0;       ///< 0: grown up, 1: a child of seven, by height
     float build = 0;       ///< -1 .. 1
     float head_scale = 1;  ///< of the head in reference units; heads vary less than heights
     Vec3 head_origin = {};

@@ -70,8 +70,7 @@ void weigh_leg(WeightMixer& mixer, const Vec3& p, bool foot) {
 void weigh_arm(WeightMixer& mixer, const PersonFrame& frame, float along) {
     const float elbow = frame.upper_arm_length;
     const float wrist = elbow + frame.forearm_length;
-    mixer.pass(
-        SideJoint::UpperArm, SideJoint::UpperArmTwist, 0.8f * (1 - ramp(0.05f, 0.20f, along)));
+    mixer.pass(SideJoint::UpperArm, SideJoint::UpperArmTwist, 1 - ramp(0.11f, 0.25f, along));
     mixer.pass(
         SideJoint::UpperArm, SideJoint::Forearm, ramp(elbow - 0.048f, elbow + 0.048f, along));
     mixer.pass(
@@ -101,7 +100,7 @@ JointWeights weigh_trunk(const PersonFrame& frame, const BodyVertex& vertex) {
     mixer.weights = left.weights;
     mixer.weights[mixer.at(SideJoint::Shoulder)] += collar_weight;
     mixer.weights[mixer.at(SideJoint::UpperArm)] += arm_weight;
-    mixer.pass(SideJoint::UpperArm, SideJoint::UpperArmTwist, 0.8f);
+    mixer.pass(SideJoint::UpperArm, SideJoint::UpperArmTwist, 1);
     // Thighs
     const float most = vertex.zone == BodyZone::Skirt ? 0.85f : 1.0f;
     const float share = most * thigh_share(p);
