@@ -5,7 +5,7 @@
 #include "systems/animation/twist_pose.h"
 
 #include <algorithm>
-#include <string>
+#include <cstddef>
 #include <vector>
 
 // Techniques: char.skin-defects
@@ -76,21 +76,27 @@ void drive_bends(
         if (!is_bend(targets[t])) {
             continue;
         }
-        const std::string joint = targets[t].name.substr(kBendShapePrefix.size());
-        const auto found = std::ranges::find(skeleton.joints, joint);
+        const BendName name = parse_bend_name(targets[t].name);
+        const auto found = std::ranges::find(skeleton.joints, name.joint);
         if (found != skeleton.joints.end()) {
             const auto index = static_cast<std::size_t>(found - skeleton.joints.begin());
-            weights[first + t] = bend_shape_weight(joint_bend(skeleton, joints, index));
+            weights[first + t] = bend_shape_weight(joint_bend(skeleton, joints, index, name.axis));
         }
     }
 }
 
 }  // namespace
 
-float joint_bend(const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint) {
-    const auto freedom = std::ranges::find(skeleton.freedoms, joint, &JointFreedom::joint);
-    if (freedom == skeleton.freedoms.end() || joint >= joints.size()
+float joint_bend(
+    const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint,
+    std::size_t axis) {
+    const auto first = std::ranges::find(skeleton.freedoms, joint, &JointFreedom::joint);
+    if (static_cast<std::size_t>(skeleton.freedoms.end() - first) <= axis || joint >= joints.size()
         || skeleton.parents[joint] < 0) {
+        return 0;
+    }
+    const auto freedom = first + static_cast<std::ptrdiff_t>(axis);
+    if (freedom->joint != joint) {
         return 0;
     }
     const Quat parent = rotation_of(joints[static_cast<std::size_t>(skeleton.parents[joint])]);

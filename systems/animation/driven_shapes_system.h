@@ -20,10 +20,12 @@ namespace limn {
 [[nodiscard]] float
 driven_weight(std::span<const ShapeDriver> drivers, std::span<const float> weights);
 
-/// By how much a joint is bent [rad]: its angle about its first axis, from rest, positive to the
-/// side of the wider limit. 0 without an axis. `joints`: character_from_joint matrices.
-[[nodiscard]] float
-joint_bend(const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint);
+/// By how much a joint is bent [rad]: its angle about the axis of this index among its own, from
+/// rest, positive to the side of the wider limit. 0 without that axis. `joints`:
+/// character_from_joint matrices.
+[[nodiscard]] float joint_bend(
+    const SkeletonData& skeleton, std::span<const Affine> joints, std::size_t joint,
+    std::size_t axis = 0);
 
 /// Writes the weights of all targets with drivers or of bends, of this step and of the previous
 /// one. After update_poses.

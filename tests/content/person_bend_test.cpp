@@ -6,6 +6,7 @@
 #include "systems/animation/twist_pose.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/content/posed_person.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn::person_bend_test {
@@ -119,6 +121,48 @@ LocalPose bent(const SkeletonData& skeleton, const char* joint, float angle) {
         }
     }
     return pose;
+}
+
+/// Arms raised from where they hang by `angle` [rad], a fifth of it by the shoulder blade; the axis
+/// is forward, that of the second freedom of the joints.
+LocalPose raised(const SkeletonData& skeleton, float angle) {
+    LocalPose pose = skeleton.rest;
+    const float beyond = angle - kPi / 4;  // at rest, arms are 45 degrees below the horizontal
+    for (const auto& [side, name] : {std::pair(1.0f, "Left"), std::pair(-1.0f, "Right")}) {
+        const std::string s = name;
+        pose.rotations[joint_called(skeleton, s + "Shoulder")] =
+            rotation_about({0, 0, side}, 0.2f * beyond);
+        pose.rotations[joint_called(skeleton, s + "UpperArm")] =
+            rotation_about({0, 0, side}, 0.8f * beyond);
+    }
+    return pose;
+}
+
+/// Of the skin below the left shoulder that the arm moves about half: its smallest distance from
+/// the axis of the joint, over that at rest. `rest`: without corrective shapes.
+float nearest_armpit(
+    const MeshData& rest, const MeshData& mesh, const SkeletonData& skeleton,
+    const LocalPose& pose) {
+    const LocalPose placed = placed_joints(skeleton, pose);
+    const std::size_t arm = joint_called(skeleton, "LeftUpperArm");
+    const std::size_t twist = joint_called(skeleton, "LeftUpperArmTwist");
+    const Vec3 center = rest_point(skeleton, static_cast<std::int32_t>(arm));
+    const MeshData moved = posed_mesh(mesh, skeleton, pose);
+    float least = 10;
+    for (std::size_t v = 0; v < rest.positions.size(); ++v) {
+        float share = 0;
+        for (std::uint32_t i = rest.skin.first[v]; i < rest.skin.first[v + 1]; ++i) {
+            const std::size_t joint = rest.skin.joints[i];
+            share += joint == arm || joint == twist ? rest.skin.weights[i] : 0.0f;
+        }
+        const Vec3 from = rest.positions[v] - center;
+        if (share > 0.25f && share < 0.75f && from.x + from.y < -0.4f * glm::length(from)) {
+            const float before = glm::length(Vec2(from));
+            const float after = glm::length(Vec2(moved.positions[v] - placed.translations[arm]));
+            least = std::min(least, after / before);
+        }
+    }
+    return least;
 }
 
 /// With the bend shape of a joint.
@@ -257,13 +301,45 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "person: arms raised by 90 and 150 degrees keep their armpits, by a corrective shape"
+    * technique("char.skin-defects")) {
+    for (const int seed : {1, 2, 3}) {
+        for (const float degrees : {90.0f, 150.0f}) {
+            CAPTURE(seed);
+            CAPTURE(degrees);
+            const PersonShape shape = {
+                .part = PersonPart::Shirt, .seed = seed, .sleeves = PersonSleeves::Long};
+            const MeshData shirt = make_person(shape);
+            const SkeletonData skeleton = make_person_rig(shape).skeleton;
+            const float angle = radians(degrees);
+            const LocalPose pose = raised(skeleton, angle);
+            const float weight = bend_shape_weight(0.8f * (angle - kPi / 4));
+            MeshData corrected = shirt;
+            for (const char* joint : {"LeftUpperArm axis 2", "RightUpperArm axis 2"}) {
+                corrected = with_bend(corrected, joint, weight);
+            }
+            const double volume = signed_volume(shirt);
+            const double whole = signed_volume(posed_mesh(corrected, skeleton, pose));
+            CHECK(whole == near(volume).epsilon(0.12));
+            const float bare = nearest_armpit(shirt, shirt, skeleton, pose);
+            const float kept = nearest_armpit(shirt, corrected, skeleton, pose);
+            CAPTURE(bare);
+            CAPTURE(kept);
+            REQUIRE(bare < (degrees > 100 ? 0.72f : 0.99f));
+            CHECK(kept > (degrees > 100 ? 0.8f : 0.96f));
+            CHECK(1 - kept < 0.6f * (1 - bare));
+        }
+    }
+}
+
 TEST_CASE("person: bend shapes of all parts are the same list, and levels of detail have none") {
     std::vector<std::string> names;
     for (const PersonPart part :
          {PersonPart::Skin, PersonPart::Shirt, PersonPart::Trousers, PersonPart::All}) {
         const MeshData mesh = make_person({.part = part, .seed = 2});
-        REQUIRE(mesh.morphs.size() == 6);
-        for (std::size_t t = 0; t < 6; ++t) {
+        REQUIRE(mesh.morphs.size() == 8);
+        for (std::size_t t = 0; t < 8; ++t) {
             const MorphTarget& shape = mesh.morphs[t];
             names.push_back(shape.name);
             CHECK(shape.name == names[t]);

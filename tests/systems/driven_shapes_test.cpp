@@ -1,4 +1,5 @@
 #include "ecs/components/all.h"
+#include "ecs/components/bend_shapes.h"
 #include "systems/animation/deform_mesh.h"
 #include "systems/animation/driven_shapes_system.h"
 #include "systems/update_world.h"
@@ -157,6 +158,35 @@ TEST_CASE(
         CHECK(weights[0] == near(wanted).epsilon(1e-3));
         CHECK(weights[1] == 0);
     }
+}
+
+TEST_CASE(
+    "driven shapes: a bend shape may follow another axis of its joint, named by its number"
+    * technique("char.skin-defects")) {
+    CHECK(parse_bend_name("bend joint 2").joint == "joint 2");
+    CHECK(parse_bend_name("bend joint 2").axis == 0);
+    CHECK(parse_bend_name("bend joint 2 axis 3").joint == "joint 2");
+    CHECK(parse_bend_name("bend joint 2 axis 3").axis == 2);
+    CHECK(parse_bend_name("bend axis 0").joint == "axis 0");
+    SkeletonData skeleton = make_chain(3);
+    skeleton.freedoms = {
+        {.joint = 1, .axis = {0, 1, 0}, .min = -0.1f, .max = 1},
+        {.joint = 2, .axis = {1, 0, 0}, .min = -2.5f, .max = 0.1f},
+        {.joint = 2, .axis = {0, 0, 1}, .min = -0.5f, .max = 2}};
+    const auto turned = [](const Quat& q) {
+        const Mat3 m = glm::mat3_cast(q);
+        Affine place;
+        for (int r = 0; r < 3; ++r) {
+            place.row[r] = Vec4(m[0][r], m[1][r], m[2][r], 0);
+        }
+        return place;
+    };
+    const Quat bent = rotation_about({0, 0, 1}, 0.8f);
+    const Affine joints[] = {turned(Quat(1, 0, 0, 0)), turned(bent), turned(bent * bent)};
+    CHECK(joint_bend(skeleton, joints, 2) == near(0.0).scale(1));
+    CHECK(joint_bend(skeleton, joints, 2, 1) == near(0.8).epsilon(1e-4));
+    CHECK(joint_bend(skeleton, joints, 2, 2) == 0);
+    CHECK(joint_bend(skeleton, joints, 1, 2) == 0);  // not the next joint's
 }
 
 }  // namespace limn::driven_shapes_test

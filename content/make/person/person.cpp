@@ -16,7 +16,7 @@ namespace limn {
 namespace {
 
 constexpr float kSmooth = kPi;
-constexpr float kThinning = 0.0016f;      ///< what details of cloth may move [m]
+constexpr float kThinning = 0.0014f;      ///< what details of cloth may move [m]
 constexpr float kSkinThinning = 0.0004f;  ///< likewise of arms
 constexpr float kClothCrease = 1.25f;     ///< hems are sharp [rad]
 constexpr float kTrimCrease = 0.9f;

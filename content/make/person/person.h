@@ -19,8 +19,8 @@ namespace limn {
 // Each part is a mesh with its own material; "all" is everything in one. Vertex colors are the
 // colors of skin, cloth and hair, for white materials. Texture coordinates are meters, except for
 // the face, whose chart is that of the head; v runs along strands of hair from roots to tips.
-// Morph targets follow elbows, knees and hips that bend (bend_shapes.h), but not in levels of
-// detail. Clips: "idle", and for looking at the body "arms_up", "sit", "squat", "fist"
+// Morph targets follow elbows, knees, hips and shoulders that bend (bend_shapes.h), but not in
+// levels of detail. Clips: "idle", and for looking at the body "arms_up", "sit", "squat", "fist"
 // and "palms_up".
 
 enum class PersonPart : std::uint8_t { All, Skin, Eyes, Hair, Shirt, Trousers, Shoes };

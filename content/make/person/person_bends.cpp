@@ -8,10 +8,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 // Techniques: char.skin-defects
@@ -25,9 +27,11 @@ constexpr float kMaxShift = 0.12f;  ///< far from a hip, skin is held by what is
 
 struct BendHinge {
     std::uint16_t joint = 0;
+    std::string suffix = {};  ///< of the shape's name
     Vec3 center = {};
-    Vec3 axis = {};    ///< bends by positive angles
-    Vec3 inward = {};  ///< from the joint to the inside of the bend
+    Vec3 axis = {};        ///< bends by positive angles
+    Vec3 inward = {};      ///< from the joint to the inside of the bend
+    bool creased = false;  ///< the inside is no limb that folds onto a limb
 };
 
 Vec3 rest_center(const SkeletonData& skeleton, std::int32_t joint) {
@@ -38,13 +42,19 @@ Vec3 rest_center(const SkeletonData& skeleton, std::int32_t joint) {
     return p;
 }
 
-BendHinge find_hinge(const SkeletonData& skeleton, std::uint16_t joint, std::uint16_t end) {
+/// `axis`: index among the joint's axes of freedom.
+BendHinge
+find_hinge(const SkeletonData& skeleton, std::uint16_t joint, std::uint16_t end, int axis) {
     BendHinge hinge = {.joint = joint, .center = rest_center(skeleton, joint)};
+    int index = 0;
     for (const JointFreedom& freedom : skeleton.freedoms) {
-        if (freedom.joint == joint) {
+        if (freedom.joint == joint && index++ == axis) {
             hinge.axis = freedom.max >= -freedom.min ? freedom.axis : -freedom.axis;
-            break;
         }
+    }
+    if (axis > 0) {
+        hinge.suffix = " axis " + std::to_string(axis + 1);
+        hinge.creased = true;
     }
     hinge.inward = glm::normalize(glm::cross(hinge.axis, skeleton.rest.translations[end]));
     return hinge;
@@ -76,20 +86,96 @@ Vec3 bend_shift(const BendHinge& hinge, const Vec3& p, float share) {
     return length > 0 ? kMaxShift * std::tanh(length / kMaxShift) / length * shift : shift;
 }
 
+/// Vertices at one place, each with all that share an edge with any of them.
+struct WeldedMesh {
+    std::vector<std::uint32_t> place;                   ///< of each vertex
+    std::vector<std::vector<std::uint32_t>> neighbors;  ///< places around each place
+};
+
+WeldedMesh weld(const MeshData& mesh) {
+    WeldedMesh welded;
+    std::map<std::array<float, 3>, std::uint32_t> places;
+    for (const Vec3& p : mesh.positions) {
+        const auto next = static_cast<std::uint32_t>(places.size());
+        welded.place.push_back(places.try_emplace({p.x, p.y, p.z}, next).first->second);
+    }
+    welded.neighbors.resize(places.size());
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = welded.place[mesh.indices[i + k]];
+            const std::uint32_t b = welded.place[mesh.indices[i + (k + 1) % 3]];
+            welded.neighbors[a].push_back(b);
+        }
+    }
+    return welded;
+}
+
+float carried_share(const MeshData& mesh, const std::vector<bool>& carried, std::uint32_t v) {
+    float share = 0;
+    for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+        share += carried[mesh.skin.joints[i]] ? mesh.skin.weights[i] : 0.0f;
+    }
+    return share;
+}
+
+/// Rounds the crease on the inside of a bend: the mean of the neighbors there, some times over,
+/// when the hinge is bent by kFullBend. Adds to `shifts`, one for each vertex.
+void relax_crease(
+    const MeshData& mesh, const std::vector<bool>& carried, const BendHinge& hinge,
+    std::vector<Vec3>& shifts) {
+    constexpr int kRounds = 12;
+    const Mat3 whole = glm::mat3_cast(rotation_about(hinge.axis, kFullBend));
+    const WeldedMesh welded = weld(mesh);
+    std::vector<Vec3> bent(welded.neighbors.size());
+    std::vector<float> mobile(welded.neighbors.size());
+    std::vector<Mat3> blends(mesh.positions.size());
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        const float share = carried_share(mesh, carried, v);
+        const Vec3 from = mesh.positions[v] - hinge.center;
+        const float inside = glm::dot(from, hinge.inward) / std::max(glm::length(from), 1e-4f);
+        blends[v] = (1 - share) * Mat3(1) + share * whole;
+        bent[welded.place[v]] = blends[v] * (from + shifts[v]);
+        mobile[welded.place[v]] =
+            glm::smoothstep(-0.1f, 0.4f, inside) * std::min(8 * share * (1 - share), 1.0f);
+    }
+    const std::vector<Vec3> before = bent;
+    for (int round = 0; round < kRounds; ++round) {
+        const std::vector<Vec3> last = bent;
+        for (std::size_t p = 0; p < last.size(); ++p) {
+            Vec3 sum(0);
+            for (const std::uint32_t n : welded.neighbors[p]) {
+                sum += last[n];
+            }
+            if (mobile[p] > 0 && !welded.neighbors[p].empty()) {
+                const Vec3 mean = sum / static_cast<float>(welded.neighbors[p].size());
+                bent[p] = glm::mix(last[p], mean, 0.6f * mobile[p]);
+            }
+        }
+    }
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        const std::uint32_t p = welded.place[v];
+        if (mobile[p] > 0) {
+            shifts[v] += glm::inverse(blends[v]) * (bent[p] - before[p]);
+        }
+    }
+}
+
 MorphTarget
 make_bend_shape(const MeshData& mesh, const SkeletonData& skeleton, const BendHinge& hinge) {
     MorphTarget shape;
-    shape.name = std::string(kBendShapePrefix) + skeleton.joints[hinge.joint];
+    shape.name = std::string(kBendShapePrefix) + skeleton.joints[hinge.joint] + hinge.suffix;
     const std::vector<bool> carried = list_carried(skeleton, hinge.joint);
+    std::vector<Vec3> shifts;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-        float share = 0;
-        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
-            share += carried[mesh.skin.joints[i]] ? mesh.skin.weights[i] : 0.0f;
-        }
-        const Vec3 shift = bend_shift(hinge, mesh.positions[v], share);
-        if (glm::length(shift) > kMinShift) {
+        shifts.push_back(bend_shift(hinge, mesh.positions[v], carried_share(mesh, carried, v)));
+    }
+    if (hinge.creased) {
+        relax_crease(mesh, carried, hinge, shifts);
+    }
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        if (glm::length(shifts[v]) > kMinShift) {
             shape.vertices.push_back(v);
-            shape.positions.push_back(shift);
+            shape.positions.push_back(shifts[v]);
         }
     }
     return shape;
@@ -98,16 +184,22 @@ make_bend_shape(const MeshData& mesh, const SkeletonData& skeleton, const BendHi
 }  // namespace
 
 void add_bend_shapes(MeshData& mesh, const SkeletonData& skeleton) {
-    constexpr std::array<std::pair<SideJoint, SideJoint>, 3> kBones = {{
-        {SideJoint::Forearm, SideJoint::Hand},
-        {SideJoint::Shin, SideJoint::Foot},
-        {SideJoint::Thigh, SideJoint::Shin},
+    struct Bone {
+        SideJoint joint;
+        SideJoint end;
+        int axis;
+    };
+    constexpr std::array<Bone, 4> kBones = {{
+        {SideJoint::Forearm, SideJoint::Hand, 0},
+        {SideJoint::Shin, SideJoint::Foot, 0},
+        {SideJoint::Thigh, SideJoint::Shin, 0},
+        {SideJoint::UpperArm, SideJoint::Forearm, 1},
     }};
-    for (const auto& [joint, end] : kBones) {
+    for (const Bone& bone : kBones) {
         for (const int side : {1, -1}) {
-            mesh.morphs.push_back(make_bend_shape(
-                mesh, skeleton,
-                find_hinge(skeleton, joint_index(joint, side), joint_index(end, side))));
+            const BendHinge hinge = find_hinge(
+                skeleton, joint_index(bone.joint, side), joint_index(bone.end, side), bone.axis);
+            mesh.morphs.push_back(make_bend_shape(mesh, skeleton, hinge));
         }
     }
 }

@@ -95,8 +95,8 @@ std::vector<float> shirt_rows(const PersonFrame& frame) {
     const float hem = shirt_hem(frame);
     std::vector<float> heights = {hem, hem + 0.008f};
     for (const float height :
-         {0.68f, 0.72f,  0.76f,  0.80f,  0.84f,  0.88f,  0.925f, 0.955f,   0.985f, 1.012f,
-          1.04f, 1.07f,  1.10f,  1.13f,  1.16f,  1.19f,  1.215f, 1.24f,    1.265f, 1.29f,
+         {0.69f, 0.745f, 0.80f,  0.86f,  0.925f, 0.955f, 0.985f, 1.012f,   1.04f,
+          1.07f, 1.10f,  1.13f,  1.16f,  1.19f,  1.215f, 1.24f,  1.265f,   1.29f,
           1.32f, 1.352f, 1.384f, 1.412f, 1.432f, 1.449f, 1.464f, kShirtTop}) {
         if (height > heights.back() + 0.005f) {
             heights.push_back(height);

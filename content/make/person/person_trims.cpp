@@ -177,11 +177,11 @@ void add_shirt_trims(BodyMesh& mesh, const PersonFrame& frame) {
     const float step = coat ? 0.12f : 0.088f;
     const float lowest = std::max(shirt_hem(frame) + 0.05f, coat ? 0.80f : 0.0f);
     for (float height = coat ? 1.36f : 1.415f; height > lowest; height -= step) {
-        const Vec3 center = shirt_point(frame, height, 0, coat ? 0.006f : 0.0038f);
+        const Vec3 center = shirt_point(frame, height, 0, coat ? 0.0075f : 0.0046f);
         add_button(mesh, center, coat ? 0.010f : 0.0058f, button);
     }
     const Patch pocket = {
-        .columns = 3, .rows = 2, .thick = 0.0032f, .size = {0.06f, 0.1f}, .color = 0.96f * cloth};
+        .columns = 3, .rows = 2, .thick = 0.0026f, .size = {0.06f, 0.1f}, .color = 0.96f * cloth};
     if (coat) {
         add_patch(mesh, pocket, [&](float across, float along, float grow) {
             return shirt_point(frame, 0.935f - 0.045f * along, 0.55f + 0.5f * across, grow);
