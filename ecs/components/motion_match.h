@@ -70,6 +70,7 @@ struct MatchFoot {
     InertialOffset turn{};
     float anchor_yaw = 0.0f;
     float clock = 0.0f;
+    float hold = 0.0f;
     std::uint32_t planted = 0;
 };
 
@@ -83,7 +84,8 @@ LIMN_FIELDS(MatchFoot) {
     LIMN_FIELD(turn, "what the rotation was off the clip's");
     LIMN_FIELD(anchor_yaw, "of a planted foot: turn from the space of the clip", "rad");
     LIMN_FIELD(clock, "since `shift` and `turn` were measured", "s");
-    LIMN_FIELD(planted, "1: on the ground", "", 0, 1);
+    LIMN_FIELD(hold, "how much it pulls the hips where the leg is too short", "", 0, 1);
+    LIMN_FIELD(planted, "1: on the ground; 2: pulled off it before the clip lifts it", "", 0, 2);
 }
 
 /// What a MotionMatch plays: all that a snapshot needs to continue in the middle of a transition.
@@ -103,7 +105,6 @@ struct MotionMatchState {
     float drift_turn = 0.0f;
     float steering = 0.0f;
     float steer_aim = 0.0f;
-    Vec2 pull = {0, 0};
     Vec2 velocity = {0, 0};
     float turn = 0.0f;
     Vec3 root = {0, 0, 0};
@@ -126,7 +127,6 @@ LIMN_FIELDS(MotionMatchState) {
     LIMN_FIELD(drift_turn, "likewise", "rad/s");
     LIMN_FIELD(steering, "turn that is added to the clip's", "rad/s");
     LIMN_FIELD(steer_aim, "what it tends to", "rad/s");
-    LIMN_FIELD(pull, "velocity that it tends to, x and z", "m/s");
     LIMN_FIELD(velocity, "of the Transform, x and z", "m/s");
     LIMN_FIELD(turn, "likewise", "rad/s");
     LIMN_FIELD(root, "where it put the Transform", "m");

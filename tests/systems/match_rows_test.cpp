@@ -6,7 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -39,10 +41,14 @@ MatchRow random_query(Random& random, float size) {
 }
 
 /// The definition, in rows as they were given.
-RowMatch nearest_of(const std::vector<MatchRow>& rows, const MatchRow& query, float limit) {
+RowMatch nearest_of(
+    const std::vector<MatchRow>& rows, const MatchRow& query, float limit, MatchSkip skipped = {}) {
     RowMatch best;
     best.distance = limit;
     for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (i >= skipped.first && i < skipped.last) {
+            continue;
+        }
         const float distance = row_distance(rows[i], query);
         if (distance < best.distance) {
             best = {static_cast<std::uint32_t>(i), distance};
@@ -51,12 +57,14 @@ RowMatch nearest_of(const std::vector<MatchRow>& rows, const MatchRow& query, fl
     return best;
 }
 
-void check_all(const std::vector<MatchRow>& rows, const MatchRow& query, float limit = INFINITY) {
+void check_all(
+    const std::vector<MatchRow>& rows, const MatchRow& query, float limit = INFINITY,
+    MatchSkip skipped = {}) {
     const MatchRows made = make_match_rows(rows);
-    const RowMatch expected = nearest_of(rows, query, limit);
-    CHECK(find_nearest_row_scalar(made, query, limit) == expected);
-    CHECK(find_nearest_row(made, query, limit) == expected);
-    CHECK(find_nearest_row_boxes(made, query, limit) == expected);
+    const RowMatch expected = nearest_of(rows, query, limit, skipped);
+    CHECK(find_nearest_row_scalar(made, query, limit, skipped) == expected);
+    CHECK(find_nearest_row(made, query, limit, skipped) == expected);
+    CHECK(find_nearest_row_boxes(made, query, limit, skipped) == expected);
 }
 
 }  // namespace
@@ -72,6 +80,9 @@ TEST_CASE("match rows: all searches find the same row with the same bits, for an
             const MatchRow query = random_query(random, i % 2 == 0 ? 0.6f : 3.0f);
             check_all(rows, query);
             check_all(rows, query, 12.0f);
+            const std::uint32_t nearest = nearest_of(rows, query, INFINITY).row;
+            check_all(rows, query, INFINITY, {nearest, nearest + 1});
+            check_all(rows, query, INFINITY, {nearest - std::min(nearest, 40u), nearest + 9});
         }
     }
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 // Techniques: char.blend
 
@@ -18,10 +19,14 @@ namespace {
 
 constexpr float kLongestLeg = 0.998f;   // of a leg, which never is quite straight
 constexpr float kLegSoftness = 0.002f;  // [leg lengths]
+constexpr float kHoldTime = 0.1f;       // in which a foot begins or ends to pull [s]
 constexpr float kKneeAhead = 0.6f;      // pull on knees, forward [leg lengths]
 constexpr float kHipsEase = 0.01f;      // over which hips begin to sink [leg lengths]
-constexpr float kMaxFootRate = 6.0f;    // of an offset [m/s]
-constexpr float kMaxFootSpin = 15.0f;   // [rad/s]
+constexpr std::uint32_t kPlanted = 1;   // of MatchFoot::planted
+constexpr std::uint32_t kPulledOff = 2;
+constexpr float kDeepestSink = 0.07f;  // of the hips above a foot [leg lengths]
+constexpr float kMaxFootRate = 20.0f;  // of an offset [m/s]
+constexpr float kMaxFootSpin = 60.0f;  // [rad/s]
 
 float yaw_of(const Quat& rotation) {
     return 2 * std::atan2(rotation.y, rotation.w);
@@ -71,6 +76,22 @@ float find_lift(
     return std::max({0.0f, ball - shown.place.y, std::min(ground, heel(target)) - heel(shown)});
 }
 
+/// By how much hips have to sink for a leg to reach an ankle [m]; < 0: not at all.
+float needed_sink(const Vec3& hip, const Vec3& ankle, float leg) {
+    const Vec3 way = hip - ankle;
+    const float most = kLongestLeg * leg;
+    const float flat = way.x * way.x + way.z * way.z;
+    return way.y - std::sqrt(std::max(most * most - flat, square(0.3f * most)));
+}
+
+/// Whether a planted foot is too far behind for its leg.
+bool is_stretched(const FootAim& aim, const Transform& at, const MatchFoot& foot) {
+    const Quat back = glm::conjugate(at.rotation);
+    const Vec3 ball = back * (foot.place - at.position) / uniform_scale(at);
+    const Vec3 ankle = ball - back * (foot.rotation * aim.ball);
+    return needed_sink(aim.hip, ankle, aim.leg) > kDeepestSink * aim.leg;
+}
+
 }  // namespace
 
 Vec3 ball_offset(const SkeletonData& skeleton, const WalkLeg& leg) {
@@ -92,6 +113,7 @@ void place_foot(const FootAim& aim, const Transform& at, MatchFoot& foot) {
     const FootPoint target = point_in(aim.local, at);
     foot.place = foot.aim = target.place;
     foot.rotation = target.rotation;
+    foot.hold = aim.contact ? 1.0f : 0.0f;
     capture_foot(aim, at, {}, foot);
 }
 
@@ -103,7 +125,7 @@ FootRate rate_between(const FootPoint& from, const FootPoint& to, float dt, cons
 
 void capture_foot(const FootAim& aim, const Transform& at, const FootRate& rate, MatchFoot& foot) {
     foot.clock = 0;
-    foot.planted = aim.contact ? 1 : 0;
+    foot.planted = aim.contact ? kPlanted : 0;
     FootPoint target = point_in(aim.local, at);
     if (aim.contact) {
         // The heading stays as long as the contact does.
@@ -129,10 +151,14 @@ void step_foot(
     // The root's own corrections are in it: a foot that leaves the ground takes them up.
     const FootRate rate = {dt > 0 ? (aim_place - foot.aim) / dt : Vec3(0), foot.spin};
     FootAim now = aim;
-    const bool was_planted = foot.planted != 0;
+    const bool was_planted = foot.planted == kPlanted;
     const float far =
         glm::distance(Vec2(foot.place.x, foot.place.z), Vec2(aim_place.x, aim_place.z));
-    now.contact = aim.contact && far < reach;
+    if (!aim.contact && foot.planted == kPulledOff) {
+        foot.planted = 0;
+    }
+    const bool pulled = far > reach || is_stretched(aim, at, foot);
+    now.contact = aim.contact && foot.planted != kPulledOff && !pulled;
     const auto show = [&] {
         FootPoint target = point_in(aim.local, at);
         if (was_planted) {
@@ -155,9 +181,12 @@ void step_foot(
         foot.rotation = rotation;
     };
     foot.clock = std::min(foot.clock + dt, 1e3f);
+    foot.hold = was_planted ? 1.0f : std::max(foot.hold - dt / kHoldTime, 0.0f);
     show();
     if (was_planted != now.contact) {
         capture_foot(now, at, rate, foot);
+        foot.hold = 1;
+        foot.planted = aim.contact && pulled ? kPulledOff : foot.planted;
     }
     foot.aim = aim_place;
 }
@@ -178,17 +207,15 @@ void apply_match_feet(
         rotations[i] = back * feet[i].rotation;
         ankles[i] = inverse_scale * (back * (feet[i].place - at.position))
                     - rotations[i] * ball_offset(skeleton, leg);
-        const Vec3 way = find_place(skeleton, pose, leg.thigh).position - ankles[i];
-        const float most = kLongestLeg * leg.length;
-        const float flat = way.x * way.x + way.z * way.z;
-        const float height = std::sqrt(std::max(most * most - flat, square(0.3f * most)));
+        const Vec3 hip = find_place(skeleton, pose, leg.thigh).position;
         // Smooth where it begins: the hips do not jerk as a leg gets straight.
-        const float over = way.y - height;
+        const float over = needed_sink(hip, ankles[i], leg.length);
         const float ease = kHipsEase * leg.length;
-        sink = std::max(
-            sink, over > ease    ? over
-                  : over > -ease ? square(over + ease) / (4 * ease)
-                                 : 0);
+        const float needed = over > ease    ? over
+                             : over > -ease ? square(over + ease) / (4 * ease)
+                                            : 0.0f;
+        const float hold = feet[i].hold * feet[i].hold * (3 - 2 * feet[i].hold);
+        sink = std::max(sink, hold * needed);
     }
     pose.translations[0].y -= sink;
     const Quat hips = find_place(skeleton, pose, body.hips).rotation

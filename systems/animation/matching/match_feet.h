@@ -47,6 +47,9 @@ struct FootAim {
     Vec3 heel = {0, 0, 0};  ///< from the ball, in the space of the ankle [m]
     float sole = 0.0f;      ///< height of the ball of a flat foot [m]
     bool contact = false;   ///< on the ground
+    Vec3 hip = {0, 0, 0};   ///< where the leg begins, in the space of the root [m]
+    Vec3 ball = {0, 0, 0};  ///< in the space of the ankle [m]
+    float leg = 1.0f;       ///< length of the leg [m]
 };
 
 /// What the foot was off the clip's, from now on; also after the clip has changed. `rate`: of the

@@ -16,13 +16,15 @@ namespace limn::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
 
-RowMatch find_row_vector(const MatchRows& rows, const MatchRow& query, float limit) {
-    return find_nearest_row_scalar(rows, query, limit);
+RowMatch
+find_row_vector(const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped) {
+    return find_nearest_row_scalar(rows, query, limit, skipped);
 }
 
-RowMatch
-find_row_boxes(const MatchRows& rows, const MatchRow& query, float limit, std::span<float>) {
-    return find_nearest_row_scalar(rows, query, limit);
+RowMatch find_row_boxes(
+    const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped,
+    std::span<float>) {
+    return find_nearest_row_scalar(rows, query, limit, skipped);
 }
 
 #else
@@ -60,7 +62,8 @@ part_distance(const float* block, const float* query, MatchVector bound, MatchVe
 }
 
 HWY_INLINE void visit_blocks(
-    const float* blocks, std::size_t first, std::size_t last, const float* query, LaneBest& best) {
+    const float* blocks, std::size_t first, std::size_t last, const float* query, MatchSkip skipped,
+    LaneBest& best) {
     const hn::RebindToUnsigned<MatchFloats> du;
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t b = first; b < last; ++b) {
@@ -70,8 +73,11 @@ HWY_INLINE void visit_blocks(
             if (!part_distance(block + lane, query, best.distance, sum)) {
                 continue;
             }
-            const auto nearer = hn::Lt(sum, best.distance);
             const auto row = hn::Iota(du, static_cast<std::uint32_t>(b * kMatchBlock + lane));
+            const auto since = hn::Sub(row, hn::Set(du, skipped.first));
+            const auto is_skipped = hn::Lt(since, hn::Set(du, skipped.last - skipped.first));
+            const auto nearer =
+                hn::AndNot(hn::RebindMask(d, is_skipped), hn::Lt(sum, best.distance));
             best.distance = hn::IfThenElse(nearer, sum, best.distance);
             best.row = hn::IfThenElse(hn::RebindMask(du, nearer), row, best.row);
         }
@@ -99,10 +105,11 @@ HWY_INLINE LaneBest no_lanes(float limit) {
     return {hn::Set(d, limit), hn::Set(hn::RebindToUnsigned<MatchFloats>(), kNoMatch)};
 }
 
-RowMatch find_row_vector(const MatchRows& rows, const MatchRow& query, float limit) {
+RowMatch
+find_row_vector(const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped) {
     LaneBest best = no_lanes(limit);
     const std::size_t blocks = rows.blocks.size() / (kMatchBlock * kMatchFeatures);
-    visit_blocks(rows.blocks.data(), 0, blocks, query.data(), best);
+    visit_blocks(rows.blocks.data(), 0, blocks, query.data(), skipped, best);
     return reduce_lanes(best);
 }
 
@@ -124,7 +131,8 @@ box_distances(const float* lows, const float* highs, const float* query, float* 
 }
 
 RowMatch find_row_boxes(
-    const MatchRows& rows, const MatchRow& query, float limit, std::span<float> distances) {
+    const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped,
+    std::span<float> distances) {
     constexpr std::size_t kBlocks = kMatchBox / kMatchBlock;
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < distances.size(); i += kMatchBlock) {
@@ -139,7 +147,7 @@ RowMatch find_row_boxes(
     // equal rows is found.
     const float* const blocks = rows.blocks.data();
     LaneBest best = no_lanes(limit);
-    visit_blocks(blocks, nearest * kBlocks, (nearest + 1) * kBlocks, query.data(), best);
+    visit_blocks(blocks, nearest * kBlocks, (nearest + 1) * kBlocks, query.data(), skipped, best);
     const float least = reduce_lanes(best).distance;
     RowMatch found;
     found.distance = least < limit ? std::nextafter(least, INFINITY) : limit;
@@ -148,7 +156,7 @@ RowMatch find_row_boxes(
             continue;
         }
         best = no_lanes(found.distance);
-        visit_blocks(blocks, i * kBlocks, (i + 1) * kBlocks, query.data(), best);
+        visit_blocks(blocks, i * kBlocks, (i + 1) * kBlocks, query.data(), skipped, best);
         const RowMatch here = reduce_lanes(best);
         found = here.row != kNoMatch ? here : found;
     }
@@ -216,10 +224,14 @@ float row_distance(const MatchRow& a, const MatchRow& b) {
     return sum;
 }
 
-RowMatch find_nearest_row_scalar(const MatchRows& rows, const MatchRow& query, float limit) {
+RowMatch find_nearest_row_scalar(
+    const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped) {
     RowMatch best;
     best.distance = limit;
     for (std::size_t i = 0; i < rows.count; ++i) {
+        if (i >= skipped.first && i < skipped.last) {
+            continue;
+        }
         const float distance = row_distance(rows.row(i), query);
         if (distance < best.distance) {
             best = {static_cast<std::uint32_t>(i), distance};
@@ -228,15 +240,18 @@ RowMatch find_nearest_row_scalar(const MatchRows& rows, const MatchRow& query, f
     return best;
 }
 
-RowMatch find_nearest_row(const MatchRows& rows, const MatchRow& query, float limit) {
-    return HWY_DYNAMIC_DISPATCH(find_row_vector)(rows, query, limit);
+RowMatch
+find_nearest_row(const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped) {
+    return HWY_DYNAMIC_DISPATCH(find_row_vector)(rows, query, limit, skipped);
 }
 
-RowMatch find_nearest_row_boxes(const MatchRows& rows, const MatchRow& query, float limit) {
+RowMatch find_nearest_row_boxes(
+    const MatchRows& rows, const MatchRow& query, float limit, MatchSkip skipped) {
     thread_local std::vector<float> distances;
     distances.resize(rows.lows.size() / kMatchFeatures);
-    return rows.count > 0 ? HWY_DYNAMIC_DISPATCH(find_row_boxes)(rows, query, limit, distances)
-                          : RowMatch{kNoMatch, limit};
+    return rows.count > 0
+               ? HWY_DYNAMIC_DISPATCH(find_row_boxes)(rows, query, limit, skipped, distances)
+               : RowMatch{kNoMatch, limit};
 }
 
 }  // namespace limn

@@ -43,6 +43,12 @@ struct MatchRows {
     [[nodiscard]] MatchRow row(std::size_t i) const;
 };
 
+/// Rows first <= i < last that a search leaves out.
+struct MatchSkip {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+};
+
 /// 136 bytes a row: with its share of a box.
 [[nodiscard]] MatchRows make_match_rows(std::span<const MatchRow> rows);
 
@@ -52,13 +58,13 @@ struct MatchRows {
 /// left out; a good `limit`, such as the distance of the row that plays, saves most of them.
 [[nodiscard]] RowMatch find_nearest_row(
     const MatchRows& rows, const MatchRow& query,
-    float limit = std::numeric_limits<float>::infinity());
+    float limit = std::numeric_limits<float>::infinity(), MatchSkip skipped = {});
 [[nodiscard]] RowMatch find_nearest_row_scalar(
     const MatchRows& rows, const MatchRow& query,
-    float limit = std::numeric_limits<float>::infinity());
+    float limit = std::numeric_limits<float>::infinity(), MatchSkip skipped = {});
 [[nodiscard]] RowMatch find_nearest_row_boxes(
     const MatchRows& rows, const MatchRow& query,
-    float limit = std::numeric_limits<float>::infinity());
+    float limit = std::numeric_limits<float>::infinity(), MatchSkip skipped = {});
 
 /// Squared distance, summed in order.
 [[nodiscard]] float row_distance(const MatchRow& a, const MatchRow& b);

@@ -2,6 +2,7 @@
 
 #include "ecs/base/rotation.h"
 #include "systems/animation/graph/inertial_offset.h"
+#include "systems/animation/ik/joint_tree.h"
 #include "systems/animation/matching/match_feet.h"
 #include "systems/animation/matching/match_root.h"
 #include "systems/animation/walk/walk_step.h"
@@ -24,7 +25,9 @@ constexpr float kVelocitySpan = 1.0f / 1000.0f;  // over which velocities are me
 constexpr float kLongestStep = 10.0f;            // what is longer is left out [s]
 constexpr float kShortestInterval = 1.0f / 120;  // between searches [s]
 constexpr float kSearchEarly = 1e-3f;            // by which a search may come too early [s]
-constexpr float kSameFrame = 0.25f;              // nearer ones are no reason to jump [s]
+constexpr float kGainSpan = 0.1f;                // over which accelerations are measured [s]
+constexpr float kSameFrame = 0.25f;              // ahead: nearer ones are no reason to jump [s]
+constexpr float kRecent = 1.0f;                  // in which a clip is not played again [s]
 constexpr float kGoodEnough = 0.02f;             // squared distance that needs no better frame
 constexpr float kClipLeft = 0.07f;               // of a clip that is over [s]
 constexpr float kSteerResponse = 0.15f;          // [s]
@@ -116,10 +119,16 @@ FootAim find_aim(
     // A foot on the ground stays there if it has to be there soon.
     const bool contact =
         touches(clip, foot, state.time)
-        || (state.feet[foot].planted != 0 && touches(clip, foot, state.time + kContactGap));
+        || (state.feet[foot].planted == 1 && touches(clip, foot, state.time + kContactGap));
     return {
-        find_foot(context.skeleton, leg, pose), root_of(clip, state.time), heel, leg.ball.y,
-        contact};
+        find_foot(context.skeleton, leg, pose),
+        root_of(clip, state.time),
+        heel,
+        leg.ball.y,
+        contact,
+        find_place(context.skeleton, pose, leg.thigh).position,
+        ball_offset(context.skeleton, leg),
+        leg.length};
 }
 
 /// How the foot of the clip that plays moves, in the world.
@@ -228,13 +237,24 @@ MatchWish find_wish(const MatchContext& context, const MoveIntent& intent) {
     return wish;
 }
 
+/// How the root moves now. What its velocity tends to follows from how the clip changes it, so that
+/// a path which goes on as in the clip is wanted as long as nothing else is.
 MatchRoot current_root(
     const MatchContext& context, const MotionMatchState& state, const Transform& transform) {
+    const MatchClip& clip = playing(context, state);
+    const float latest = std::max(clip.duration - kGainSpan, kGainSpan);
+    const float time = std::clamp(state.time, kGainSpan, latest);
+    const GroundMove back = inverse(root_of(clip, time));
+    const Vec2 sum = compose(back, root_of(clip, time + kGainSpan)).way
+                     + compose(back, root_of(clip, time - kGainSpan)).way;
+    const float response = find_wish(context, {}).response;
+    const Vec3 gain = transform.rotation * Vec3(sum.x, 0, sum.y)
+                      * (uniform_scale(transform) * response / (kGainSpan * kGainSpan));
     return {
         {transform.position.x, transform.position.z},
         heading_of(context, transform.rotation),
         state.velocity,
-        state.pull,
+        state.velocity + Vec2(gain.x, gain.z),
         state.turn};
 }
 
@@ -253,6 +273,17 @@ float find_steering(const MatchContext& context, const MatchRow& query, const Ma
     return std::clamp(angle / time, -most, most);
 }
 
+/// Rows of a clip from one time to another.
+MatchSkip rows_between(const MatchClip& clip, float from, float to) {
+    const auto row = [&](float time) {
+        const float last = static_cast<float>(clip.rows);
+        return static_cast<std::uint32_t>(
+            clip.first_row
+            + static_cast<std::size_t>(std::clamp(std::ceil(time / kMatchStep), 0.0f, last)));
+    };
+    return {row(from), row(to)};
+}
+
 void search(
     const MatchContext& context, const MoveIntent& intent, const Transform& transform,
     MotionMatchState& state) {
@@ -263,20 +294,22 @@ void search(
     const float cost = row_distance(database.frame_at({state.clip, state.time}), query);
     const float better = std::clamp(finite_or(context.match.better, 0.1f), 0.0f, 1.0f);
     const float limit = cost > kGoodEnough ? cost * (1 - better) : 0.0f;
-    const RowMatch found = find_nearest_row_boxes(database.rows, query, goes_on ? limit : INFINITY);
-    state.cost = cost;
+    // What has just played is left out, or it may begin again and again.
+    const MatchSkip recent =
+        first
+            ? MatchSkip{}
+            : rows_between(playing(context, state), state.time - kRecent, state.time + kSameFrame);
+    const RowMatch found =
+        find_nearest_row_boxes(database.rows, query, goes_on ? limit : INFINITY, recent);
+    state.cost = found.row != kNoMatch ? found.distance : cost;
     if (found.row != kNoMatch) {
-        const MatchPlace next = database.place_of(found.row);
-        const bool is_same =
-            goes_on && next.clip == state.clip && std::abs(next.time - state.time) < kSameFrame;
-        if (!is_same) {
-            state.cost = found.distance;
-            if (first) {
-                state.clip = next.clip;
-                state.time = next.time;
-            } else {
-                begin_transition(context, next, transform, state);
-            }
+        MatchPlace next = database.place_of(found.row);
+        next.time = std::max(next.time, kVelocitySpan);  // before it there has to be a pose
+        if (first) {
+            state.clip = next.clip;
+            state.time = next.time;
+        } else {
+            begin_transition(context, next, transform, state);
         }
     }
     const bool can_steer = glm::length(state.velocity) > kSteerSpeed;
@@ -285,9 +318,7 @@ void search(
 }
 
 /// Moves ahead in the clip, and the character with it.
-void advance(
-    const MatchContext& context, const MoveIntent& intent, float dt, Transform& transform,
-    MotionMatchState& state) {
+void advance(const MatchContext& context, float dt, Transform& transform, MotionMatchState& state) {
     const MatchClip& clip = playing(context, state);
     const GroundMove before = root_of(clip, state.time);
     state.time = std::min(state.time + dt, clip.duration);
@@ -310,9 +341,6 @@ void advance(
     }
     state.velocity = Vec2(way.x, way.z) / dt;
     state.turn = move.yaw / dt;
-    MatchRoot wanted = current_root(context, state, transform);
-    step_match_root(find_wish(context, intent), std::min(dt, 0.1f), wanted);
-    state.pull = wanted.pull;
     thread_local LocalPose pose;
     sample_clip_pose(context, state, 0, pose);
     const float reach = kFootReach * leg_length(context.database.body) * uniform_scale(transform);
@@ -386,7 +414,7 @@ void step_motion_match(
     }
     if (glm::distance(state.root, transform.position) > kMoved) {
         end_blend(state);
-        state.velocity = state.pull = Vec2(0);
+        state.velocity = Vec2(0);
         place_feet(context, transform, state);
     }
     const float interval = std::max(finite_or(context.match.interval, 0.1f), kShortestInterval);
@@ -397,7 +425,7 @@ void step_motion_match(
             search(context, intent, transform, state);
         }
         const float part = left < interval + kSearchEarly ? left : interval;
-        advance(context, intent, part, transform, state);
+        advance(context, part, transform, state);
         state.since_search += part;
         left -= part;
     }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint16_t kNoJoint = 0xffff;
 constexpr float kShortestTake = 1.2f;  // [s]
-constexpr float kLowestHips = 0.87f;   // of their height at rest
+constexpr float kLowestHips = 0.83f;   // of their height at rest
 constexpr float kJerk = 0.14f;         // second difference of places at 60 Hz [leg lengths]
 
 /// One line of the card.
