@@ -7,6 +7,7 @@ void add_chain_rows(CharacterBench& bench);
 void add_vertex_rows(CharacterBench& bench);
 void add_ik_rows(CharacterBench& bench);
 void add_avoid_rows(CharacterBench& bench);
+void add_match_rows(CharacterBench& bench);
 void add_memory_rows(CharacterBench& bench);
 void add_ragdoll_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
@@ -19,6 +20,7 @@ std::span<const CharacterPart> character_parts() {
         {"chain", add_chain_rows},      // 6 .. 8: all of it in one pass
         {"vertices", add_vertex_rows},  // 9
         {"ik", add_ik_rows},            // 10 .. 12
+        {"match", add_match_rows},      // 13: motion matching
         {"avoid", add_avoid_rows},      // 14 .. 18: crowds
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
