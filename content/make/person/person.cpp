@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kSmooth = kPi;
 constexpr float kThinning = 0.0014f;      ///< what details of cloth may move [m]
-constexpr float kSkinThinning = 0.0004f;  ///< likewise of arms
+constexpr float kSkinThinning = 0.0005f;  ///< likewise of arms
 constexpr float kClothCrease = 1.25f;     ///< hems are sharp [rad]
 constexpr float kTrimCrease = 0.9f;
 constexpr float kShoeCrease = 0.9f;
@@ -35,7 +35,7 @@ MeshData finish_half(BodyMesh& half, const PersonFrame& frame, float crease, boo
 /// A garment and what is sewn onto it, which keeps all its triangles.
 MeshData finish_garment(BodyMesh& half, BodyMesh& trims, const PersonFrame& frame) {
     MeshData mesh = finish_half(half, frame, kClothCrease, true);
-    thin_out(mesh, kThinning, kClothCrease);
+    thin_out(mesh, frame, kThinning, kClothCrease);
     if (!trims.vertices.empty()) {
         append_part(mesh, finish_half(trims, frame, kTrimCrease, true));
     }
@@ -48,7 +48,7 @@ MeshData make_skin(const PersonFrame& frame) {
     BodyMesh arm;
     add_arm(arm, frame, hems.sleeve - 0.045f);
     MeshData arms = finish_half(arm, frame, kSmooth, false);
-    thin_out(arms, kSkinThinning, kSmooth);
+    thin_out(arms, frame, kSkinThinning, kSmooth);
     append_part(mesh, arms);
     if (frame.look.shape.legs != PersonLegwear::Trousers) {
         BodyMesh leg;
@@ -76,7 +76,7 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
         mesh.face_outwards();
         whole = mesh.finish(frame, kSmooth);
         if (!whole.indices.empty()) {
-            thin_out(whole, 0.5f * kThinning, kSmooth);
+            thin_out(whole, frame, 0.8f * kThinning, kSmooth);
         }
         return whole;
     case PersonPart::Shirt:
@@ -90,7 +90,7 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     case PersonPart::Shoes:
         add_shoe(mesh, frame);
         whole = finish_half(mesh, frame, kShoeCrease, false);
-        thin_out(whole, kThinning, kShoeCrease);
+        thin_out(whole, frame, kThinning, kShoeCrease);
         return whole;
     }
     for (const PersonPart each :

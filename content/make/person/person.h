@@ -46,7 +46,7 @@ struct PersonShape {
     Vec3 shirt_color = {0, 0, 0};
     Vec3 trousers_color = {0, 0, 0};
     Vec3 shoe_color = {0, 0, 0};
-    int head_triangles = 2600;
+    int head_triangles = 2700;
     int triangles = 0;
 };
 

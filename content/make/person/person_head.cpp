@@ -129,7 +129,7 @@ WovenHead weave_head(const PersonFrame& frame) {
         const bool lash = vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
                           && std::sin(vertex.angle) > 0.1f;
         head.colors.push_back(
-            (lash ? 0.25f : 1.0f) * frame.look.skin_color
+            (lash ? 0.4f : 1.0f) * frame.look.skin_color
             * head_skin_color(vertex, wrapped[v], shape));
         head.charts.push_back(vertex.chart);
         if (vertex.loops == HeadLoops::None && vertex.chart.y == kHeadRows) {
@@ -234,7 +234,7 @@ void reduce(WovenHead& head, const PersonFrame& frame) {
         const float hidden = bald ? 0.0f : glm::smoothstep(0.09f, 0.12f, q.y - 0.4f * q.z);
         const float below = 1 - glm::smoothstep(-0.16f, -0.13f, q.y);
         warped.push_back(
-            q * (1 + 1.2f * face + 0.5f * (mouth + eye)) * (1 - 0.6f * std::max(hidden, below)));
+            q * (1 + 1.2f * face + 0.6f * (mouth + eye)) * (1 - 0.75f * std::max(hidden, below)));
     }
     std::vector<std::uint32_t> indices;
     // A collapse may join two layers of a lip or an ear: then a few triangles more or fewer.

@@ -257,8 +257,11 @@ MeshData BodyMesh::finish(const PersonFrame& frame, float crease) const {
     return mesh;
 }
 
-void thin_out(MeshData& mesh, float error, float crease) {
-    constexpr float kSpread = 0.15f;  // of what different joints move [m]
+void thin_out(MeshData& mesh, const PersonFrame& frame, float error, float crease) {
+    if (frame.look.shape.triangles > 0) {
+        return;
+    }
+    constexpr float kSpread = 0.06f;  // of what different joints move [m]
     constexpr float kTint = 0.003f;   // of what has different colors [m]
     std::vector<Vec3> warped = mesh.positions;
     for (std::size_t v = 0; v < warped.size(); ++v) {

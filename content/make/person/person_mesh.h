@@ -82,8 +82,9 @@ class BodyMesh {
 
 /// Collapses edges where neither shape nor skin weights nor colors vary, up to an error of `error`
 /// at the reference height [m]. Vertices that are left keep all but their normals, which are smooth
-/// up to `crease` [rad].
-void thin_out(MeshData& mesh, float error, float crease);
+/// up to `crease` [rad]. Levels of detail (PersonShape::triangles) are left as they are: seams of
+/// new normals would hinder simplify_mesh.
+void thin_out(MeshData& mesh, const PersonFrame& frame, float error, float crease);
 
 /// Appends `part`, which has the same vertex arrays, to `mesh`; both without morph targets.
 void append_part(MeshData& mesh, const MeshData& part);
