@@ -8,6 +8,7 @@
 #include "content/app/commands/bake_recipe.h"
 #include "content/app/commands/bake_relief.h"
 #include "content/app/commands/bake_strain_model.h"
+#include "content/app/commands/bake_walk.h"
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/progress.h"
 #include "content/bake/furrow_recipe.h"
@@ -160,6 +161,8 @@ constexpr BakeKind kKinds[] = {
     {"retarget", "a motion for another body", bake_retarget, ".glb or .bvh", true},
     {"strain_model", "wrinkles of captured normal maps, as a function of the strain of a face",
      bake_strain_model},
+    {"walk", "a generated walk as a clip of a skeleton, in any style, along any way", bake_walk,
+     ".glb or .bvh"},
 };
 
 }  // namespace

@@ -256,7 +256,7 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
 
 Command add_bake(CLI::App& program, BakeOptions& options) {
     CLI::App* app = program.add_subcommand(
-        "bake", "Make maps from meshes, heights or photographs, and clips from recorded motion");
+        "bake", "Make maps from meshes, heights or photographs, and clips of motion");
     std::string kinds;
     for (const BakeKind& kind : bake_kinds()) {
         kinds += fmt::format("  {:<12} {}\n", kind.name, kind.doc);
@@ -275,7 +275,8 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     app->add_option(
            "in", options.in,
            ".gltf, .glb or .obj; or an image of heights; .json for photometric and strain_model; "
-           ".bvh, .htr, .trc or .glb for motion and retarget")
+           ".bvh, .htr, .trc or .glb for motion and retarget; for walk a file with a skeleton, or "
+           "person")
         ->type_name("IN")
         ->required();
     app->add_option("body", options.body, "retarget, and motion of .trc: a file with a skeleton")
@@ -356,6 +357,15 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "retarget gives a motion to BODY, whose joints have equal names or are the same parts of "
         "a\n"
         "person; planted feet stay. Its recipe: clip, pin_feet, fade, hands, travel.\n"
+        "walk makes a walk for the legs of a skeleton; IN may be person, as limn make makes it. "
+        "Its recipe:\n"
+        "speed, stride, step_height, plateau, flight; knee_bend, stoop, width, toe_off, "
+        "heel_strike; left,\n"
+        "right (weights of hip, knee and ankle), limp, tiredness; hip_yaw, hip_roll, sway, bob; "
+        "arm_swing,\n"
+        "arms; pace, turn, points ([{{\"position\": [2, 0, 3], \"wait\": 1}}, ...]), standing, "
+        "seconds,\n"
+        "rate; cycle makes two steps that repeat, on the spot.\n"
         "ghosts superimposes the poses of a motion; its recipe: clip, begin, end, step [s], "
         "trails\n"
         "(names of joints), highlight. curves plots the rotation channels of the joint of its\n"
@@ -367,6 +377,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
         "  limn bake motion walk.bvh -o walk.glb --set cutoff=8 --set travel=true --set loop=true\n"
         "  limn bake motion walk.glb -o walk.bvh\n"
         "  limn bake retarget walk.bvh person.glb -o walking.glb\n"
+        "  limn bake walk person -o walk.glb --set speed=1.1 --set limp=0.6 --set turn=0.3\n"
         "  limn bake normal heights.png -o normal.png --set depth=0.02\n"
         "  limn bake cone model.glb -o cones.png --set face=top --set size=64\n"
         "  limn bake detail low.obj --high high.obj -o statue.png --set distance=0.05\n"

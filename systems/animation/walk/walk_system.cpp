@@ -1,16 +1,11 @@
 #include "systems/animation/walk/walk_system.h"
 
-#include <glm/geometric.hpp>
+#include "systems/animation/walk/walk_route.h"
 
-#include <algorithm>
+#include <cstdint>
+#include <optional>
 
 namespace limn {
-namespace {
-
-constexpr float kArrival = 0.06f;     // from where it comes to rest without braking [m]
-constexpr float kClipArrival = 0.3f;  // likewise, where clips move it [m]
-
-}  // namespace
 
 void add_walk_states(
     Query<const Walk, const Skeleton, Without<WalkState>> walks,
@@ -34,36 +29,13 @@ void update_walk_routes(
         WalkRouteState, MoveIntent>
         walkers,
     Res<const FrameTime> time) {
-    const Walk usual;
-    walkers.par_each([&usual, step = time->step](
+    walkers.par_each([step = time->step](
                          const WalkRoute& route, const Walk* walk, const WalkState* feet,
                          const Transform& transform, WalkRouteState& state, MoveIntent& intent) {
-        const auto count = static_cast<std::uint32_t>(route.points.size());
-        intent.velocity = Vec3(0);
-        if (count == 0) {
-            return;
-        }
-        state.next = std::min(state.next, count - 1);
-        const RoutePoint& point = route.points[state.next];
-        const Vec3 way = (point.position - transform.position) * Vec3(1, 0, 1);
-        const float far = glm::length(way);
-        const bool is_last = !route.loop && state.next + 1 == count;
-        const bool stops = point.wait > 0 || is_last;
-        const Walk& style = walk != nullptr ? *walk : usual;
-        const float speed = point.speed > 0 ? point.speed : effective_walk(style).speed;
-        // Slows down in time for where it stops: both time constants of the root.
-        const float braking = far / std::max(2.2f * style.response, 0.05f);
-        const float arrival = walk != nullptr ? kArrival : kClipArrival;
-        if (far > (stops ? arrival : route.reach) && is_finite(way)) {
-            intent.velocity = (stops ? std::min(speed, braking) : speed) / far * way;
-            return;
-        }
-        const bool stands = feet == nullptr || feet->flying == WalkState::kNoFoot;
-        state.waited += stands ? step : 0.0f;
-        if (!is_last && state.waited >= point.wait) {
-            state.waited = 0;
-            state.next = (state.next + 1) % count;
-        }
+        const bool by_feet = walk != nullptr && feet != nullptr;
+        intent.velocity = by_feet
+                              ? follow_route(route, *walk, *feet, transform.position, step, state)
+                              : follow_route_by_clips(route, transform.position, step, state);
     });
 }
 
