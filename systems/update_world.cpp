@@ -16,6 +16,7 @@
 #include "systems/animation/matching/motion_match_system.h"
 #include "systems/animation/pose_keys_system.h"
 #include "systems/animation/pose_system.h"
+#include "systems/animation/puppet/puppet_system.h"
 #include "systems/animation/ragdoll/ragdoll_system.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/animation/surface_binding_system.h"
@@ -134,17 +135,20 @@ void add_animation_systems(SystemList& systems) {
     systems.add<add_walk_states>(Create, Both);
     systems.add<add_motor_poses>(Create, Both);
     systems.add<add_crowd_walks>(Create, Both);
+    systems.add<add_puppet_states>(Create, Both);
     systems.add<update_walk_routes>(Animate);
     systems.add<update_motion_matching>(Animate, Both);  // after what sets intents
     systems.add<update_walks>(Animate, Both);            // after all that moves characters
     systems.add<update_motor_poses>(
-        Animate, Both);  // after walks: moves feet that are off the ground
+        Animate, Both);                    // after walks: moves feet that are off the ground
+    systems.add<update_puppets>(Animate);  // plays what was sent in earlier steps
     systems.add<update_foot_contacts>(Animate, Both);
     systems.add<update_ik_goals>(Animate, Both);
     systems.add<update_twist_links>(Animate, Both);
     systems.add<add_ragdoll_states>(Create, Both);
     systems.add<place_ragdolls>(Animate, Both);
-    systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
+    systems.add<update_poses>(Animate, Both);       // after clips: samples them at their new time
+    systems.add<send_performances>(Animate, Both);  // after poses: sends them
     systems.add<update_driven_shapes>(Animate, Both);  // after poses: follows their weights
     systems.add<update_deformers>(Animate, Both);
     systems.add<update_surface_bindings>(Animate, Both);  // after what deforms the surfaces

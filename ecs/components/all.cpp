@@ -55,6 +55,7 @@
 #include "ecs/components/pose_keys.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
+#include "ecs/components/puppet.h"
 #include "ecs/components/ragdoll.h"
 #include "ecs/components/relief_box.h"
 #include "ecs/components/rendering.h"
@@ -160,6 +161,8 @@ void register_all_components() {
     register_component<MotorState>();
     register_component<MotorPose>();
     register_component<MotorPoseState>();
+    register_component<Puppet>();
+    register_component<PuppetState>();
     register_component<Hero>();
     register_component<LooseBody>();
     register_component<LooseState>();

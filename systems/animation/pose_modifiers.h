@@ -6,6 +6,7 @@
 #include "ecs/components/motion_match.h"
 #include "ecs/components/motor_pose.h"
 #include "ecs/components/pose_keys.h"
+#include "ecs/components/puppet.h"
 #include "ecs/components/ragdoll.h"
 #include "ecs/components/twist_joints.h"
 #include "ecs/components/walk.h"
@@ -13,6 +14,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "systems/animation/graph/motion_plan.h"
+#include "systems/animation/puppet/puppet_body.h"
 #include "systems/animation/walk/walk_body.h"
 
 namespace limn {
@@ -34,6 +36,7 @@ struct PoseModifiers {
     Query<const PoseKeysState> keys;
     Query<const TwistJoints, const TwistLinks> twists;
     Query<const MatchPose, const MotionMatchState> matches;
+    Query<const PuppetState, const PuppetBody> puppets;
 };
 
 template <>
@@ -47,6 +50,7 @@ struct SystemParam<PoseModifiers>
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
           Query<const RagdollState>, Query<const PoseKeysState>,
           Query<const TwistJoints, const TwistLinks>,
-          Query<const MatchPose, const MotionMatchState>> {};
+          Query<const MatchPose, const MotionMatchState>,
+          Query<const PuppetState, const PuppetBody>> {};
 
 }  // namespace limn

@@ -188,7 +188,8 @@ class Modifiers {
               !queries.walks.empty() || !queries.plants.empty() || !queries.rigs.empty()
               || !queries.looks.empty() || !queries.reaches.empty() || !queries.ragdolls.empty()
               || !queries.twists.empty() || !queries.matches.empty()),
-          any_graph_(!queries.graphs.empty()), any_keys_(!queries.keys.empty()) {}
+          any_graph_(!queries.graphs.empty()), any_keys_(!queries.keys.empty()),
+          any_puppet_(!queries.puppets.empty()) {}
 
     [[nodiscard]] bool has(Entity entity) const {
         return (any_
@@ -197,7 +198,19 @@ class Modifiers {
                     || queries_.reaches.contains(entity) || queries_.ragdolls.contains(entity)
                     || queries_.twists.contains(entity) || queries_.matches.contains(entity)))
                || (any_graph_ && queries_.graphs.contains(entity))
-               || (any_keys_ && queries_.keys.contains(entity));
+               || (any_keys_ && queries_.keys.contains(entity))
+               || (any_puppet_ && queries_.puppets.contains(entity));
+    }
+
+    /// The pose that the character performs as a puppet; null: it does not.
+    [[nodiscard]] const LocalPose* find_performed(Entity entity, std::size_t joints) const {
+        const auto* const state =
+            any_puppet_ ? queries_.puppets.find<const PuppetState>(entity) : nullptr;
+        if (state == nullptr || !state->started) {
+            return nullptr;
+        }
+        const LocalPose& pose = queries_.puppets.find<const PuppetBody>(entity)->pose;
+        return pose.size() == joints ? &pose : nullptr;
     }
 
     /// The clip of the character's PoseKeys; null: it has none.
@@ -272,6 +285,7 @@ class Modifiers {
     bool any_;
     bool any_graph_;
     bool any_keys_;
+    bool any_puppet_;
 };
 
 /// Blends in what a crowd's character played before.
@@ -300,7 +314,11 @@ void step_character(
     const bool is_new = begin_step(skeleton, pose, morph);
     const std::span<float> weights =
         morph != nullptr ? std::span<float>(morph->weights) : std::span<float>();
-    if (modifiers.sample_graph(entity, id, assets, scratch, weights, playback.is_cut)) {
+    if (const LocalPose* const performed =
+            modifiers.find_performed(entity, skeleton.joints.size())) {
+        scratch = *performed;
+        playback.player = nullptr;
+    } else if (modifiers.sample_graph(entity, id, assets, scratch, weights, playback.is_cut)) {
         playback.player = nullptr;
     } else {
         const ClipPlayer* const player = playback.player;

@@ -7,46 +7,6 @@
 #include <cmath>
 
 namespace limn {
-namespace {
-
-/// The joint and its ancestors, up to the first one.
-std::vector<std::uint16_t> list_ancestors(const SkeletonData& skeleton, std::uint16_t joint) {
-    std::vector<std::uint16_t> ancestors;
-    for (std::int32_t j = joint; j >= 0; j = skeleton.parents[static_cast<std::size_t>(j)]) {
-        ancestors.push_back(static_cast<std::uint16_t>(j));
-    }
-    return ancestors;
-}
-
-}  // namespace
-
-std::vector<Affine> find_rest_matrices(const SkeletonData& skeleton) {
-    return find_frame_joints(
-        skeleton,
-        {1, skeleton.joints.size(), skeleton.rest.translations, skeleton.rest.rotations,
-         skeleton.rest.scales},
-        0);
-}
-
-float find_leg_length(const SkeletonData& skeleton, const BodyJoints& body) {
-    const std::vector<Affine> rest = find_rest_matrices(skeleton);
-    const auto distance = [&](BodyPart a, BodyPart b) {
-        return glm::distance(
-            transform_point(rest[body[a]], Vec3(0)), transform_point(rest[body[b]], Vec3(0)));
-    };
-    float sum = 0;
-    float legs = 0;
-    for (const auto& [thigh, shin, foot] :
-         {std::array{BodyPart::LeftThigh, BodyPart::LeftShin, BodyPart::LeftFoot},
-          std::array{BodyPart::RightThigh, BodyPart::RightShin, BodyPart::RightFoot}}) {
-        if (body.has(thigh) && body.has(shin) && body.has(foot)) {
-            sum += distance(thigh, shin) + distance(shin, foot);
-            legs += 1;
-        }
-    }
-    return legs > 0 ? sum / legs : 0.0f;
-}
-
 std::vector<std::uint16_t> find_foot_joints(const BodyJoints& body) {
     std::vector<std::uint16_t> joints;
     for (const BodyPart part :
@@ -56,25 +16,6 @@ std::vector<std::uint16_t> find_foot_joints(const BodyJoints& body) {
         }
     }
     return joints;
-}
-
-std::uint16_t find_body_root(const SkeletonData& skeleton, const BodyJoints& body) {
-    std::vector<std::uint16_t> common;
-    for (const BodyPart part :
-         {BodyPart::LeftThigh, BodyPart::RightThigh,
-          body.has(BodyPart::Chest) ? BodyPart::Chest : BodyPart::Head}) {
-        if (!body.has(part)) {
-            return body.has(BodyPart::Hips) ? body[BodyPart::Hips] : std::uint16_t{0};
-        }
-        const std::vector<std::uint16_t> ancestors = list_ancestors(skeleton, body[part]);
-        if (common.empty()) {
-            common = ancestors;
-        }
-        std::erase_if(common, [&](std::uint16_t joint) {
-            return std::find(ancestors.begin(), ancestors.end(), joint) == ancestors.end();
-        });
-    }
-    return common.front();
 }
 
 void move_joint(

@@ -12,14 +12,11 @@ namespace limn {
 
 // A motion recorded on one body, for a body with other proportions and another rest pose.
 //
-// Joints correspond by name, else by the part of the body that they are (humanoid.h); backs and
-// necks with other numbers of joints share the bend. Rotations are copied relative to rest, after
-// each limb of the target at rest is aligned with the source's: a T-pose and an A-pose give the
-// same motion. The way of the hips is scaled by the ratio of leg lengths. A planted foot is pinned
-// where its contact begins, by the closed form of two links; where the leg is too short the hips
-// are lowered; after a contact the correction fades. Unequal arms: the hands may follow their
-// scaled way instead of the angles (`hands`; importance as in H. Shin et al., "Computer Puppetry",
-// 2001). Not done: limbs that penetrate the body.
+// Poses are copied as body_map.h says. A planted foot is pinned where its contact begins, by the
+// closed form of two links; where the leg is too short the hips are lowered; after a contact the
+// correction fades. Unequal arms: the hands may follow their scaled way instead of the angles
+// (`hands`; importance as in H. Shin et al., "Computer Puppetry", 2001). Not done: limbs that
+// penetrate the body.
 
 struct RetargetOptions {
     bool pin_feet = true;

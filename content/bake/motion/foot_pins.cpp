@@ -178,30 +178,6 @@ std::vector<PinnedLeg> list_legs(const BodyJoints& body) {
 
 }  // namespace
 
-std::vector<Quat> find_frame_rotations(const SkeletonData& skeleton, std::span<const Quat> local) {
-    std::vector<Quat> rotations;
-    rotations.reserve(local.size());
-    for (std::size_t j = 0; j < local.size(); ++j) {
-        const std::int32_t parent = skeleton.parents[j];
-        rotations.push_back(
-            parent < 0 ? local[j] : rotations[static_cast<std::size_t>(parent)] * local[j]);
-    }
-    return rotations;
-}
-
-Vec3 find_left(const SkeletonData& skeleton, const BodyJoints& body) {
-    const std::vector<Affine> rest = find_rest_matrices(skeleton);
-    for (const auto& [left, right] :
-         {std::pair{BodyPart::LeftThigh, BodyPart::RightThigh},
-          std::pair{BodyPart::LeftUpperArm, BodyPart::RightUpperArm}}) {
-        if (body.has(left) && body.has(right)) {
-            const Vec3 across = position_in(rest, body[left]) - position_in(rest, body[right]);
-            return normalize_or(Vec3(across.x, 0, across.z), Vec3(1, 0, 0));
-        }
-    }
-    return {1, 0, 0};
-}
-
 void reach_with_limb(
     const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const PinnedLimb& limb,
     const Vec3& target, const Vec3& hinge, const Quat& turn) {

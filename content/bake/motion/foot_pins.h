@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/bake/motion/skeleton_motion.h"
+#include "ecs/components/body_measures.h"
 #include "ecs/components/humanoid.h"
 #include "ecs/components/skeleton.h"
 
@@ -37,12 +38,5 @@ struct PinnedLimb {
 void reach_with_limb(
     const SkeletonData& skeleton, MotionFrames& frames, std::size_t frame, const PinnedLimb& limb,
     const Vec3& target, const Vec3& hinge, const Quat& turn = {1, 0, 0, 0});
-
-/// The person's left at rest, unit; +x without legs or arms. Knees bend about it.
-[[nodiscard]] Vec3 find_left(const SkeletonData& skeleton, const BodyJoints& body);
-
-/// Rotations of all joints in the space of the skeleton.
-[[nodiscard]] std::vector<Quat>
-find_frame_rotations(const SkeletonData& skeleton, std::span<const Quat> local);
 
 }  // namespace limn

@@ -96,6 +96,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"char.motion-modify", "motion style: speed, exaggerated and damped motion"},
     {"char.motion-select", "motion graph, animation state machine, blend spaces, motion matching"},
     {"char.pose-eval", "pose at a time, pose sampling"},
+    {"char.puppetry", "computer puppetry, live performance, motion streaming"},
     {"char.retarget-body", "motion retargeting to another body"},
     {"char.skeleton-hierarchy", "skeleton tree, bone hierarchy"},
     {"char.skin-bone-offset", "linear blend skinning, inverse bind matrices"},
