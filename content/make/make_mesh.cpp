@@ -9,6 +9,7 @@
 #include "content/make/models/joined.h"
 #include "content/make/models/mannequin.h"
 #include "content/make/models/masonry.h"
+#include "content/make/models/patch_mesh.h"
 #include "content/make/models/plants.h"
 #include "content/make/models/projected.h"
 #include "content/make/models/refine_mesh.h"
@@ -78,6 +79,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         rigged_kind<MannequinShape, make_mannequin, make_mannequin_rig>(
             "mannequin", "an artist's wooden figure that faces z, with skeleton, skin and a clip"),
+        mesh_kind<PatchMeshShape, make_patch_grid>(
+            "patch_mesh", "a curved sheet of biquadratic patches, by a grid of control points"),
         rigged_kind<PersonShape, make_person, make_person_rig>(
             "person", "a dressed person that faces z, each seed another, with skeleton and clips"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),

@@ -30,7 +30,7 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 32);
+    REQUIRE(mesh_kinds().size() == 33);
     for (const MeshKind& kind : mesh_kinds()) {
         const std::string name = kind.name;
         if (kind.make_rig != nullptr || name == "hovercraft" || name == "boat"

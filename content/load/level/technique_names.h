@@ -21,6 +21,8 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"anim.bezier-patch-lod", "patch LOD hierarchy, level of detail of patches"},
     {"anim.bezier-patch-tessellate", "tessellation of Bezier patches"},
     {"anim.bezier-track", "multi-segment Bezier track"},
+    {"anim.biquadratic-patch",
+     "biquadratic patch, quadratic Bezier patch, curved surfaces of Quake 3"},
     {"anim.boehm-quadrangle", "Bezier points to quadrangle points, Boehm"},
     {"anim.camera-upright", "upright camera after quaternion interpolation, camera without roll"},
     {"anim.constant-angular-velocity", "equal angular speed over many keys"},
