@@ -1,5 +1,6 @@
 #include "content/app/player/skeleton_overlay.h"
 
+#include "content/app/player/label_layout.h"
 #include "content/app/player/pose_gizmo.h"
 #include "content/app/player/world_lines.h"
 #include "content/load/motion/ghost_figure.h"
@@ -10,6 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
 
 // Techniques: char.fk-keypose, char.ghost-view
 
@@ -160,6 +164,33 @@ void draw_trails(
     }
 }
 
+/// Names of joints where there is room: of the selected one first, then those of long bones.
+void draw_names(
+    const RenderView& view, const CharacterView& character, const SkeletonOverlay& overlay,
+    float size) {
+    struct Name {
+        float rank;
+        std::size_t joint;
+    };
+    std::vector<Name> names;
+    for (std::size_t j = 0; j < character.joints.size(); ++j) {
+        const bool is_selected = overlay.selected == static_cast<int>(j);
+        if (overlay.names || is_selected) {
+            names.push_back({is_selected ? INFINITY : mark_length(character, j, size), j});
+        }
+    }
+    std::ranges::stable_sort(names, std::ranges::greater{}, &Name::rank);
+    LabelLayout layout;
+    WorldLines bones(view, kBoneColor);
+    WorldLines marked(view, kSelectedColor);
+    for (const Name& name : names) {
+        (name.rank == INFINITY ? marked : bones)
+            .draw_label(
+                joint_position(character.world_from_character, character.joints[name.joint]),
+                character.skeleton->joints[name.joint], layout);
+    }
+}
+
 }  // namespace
 
 void draw_skeleton_overlay(
@@ -186,10 +217,10 @@ void draw_skeleton_overlay(
             (is_selected ? marked : bones)
                 .draw_point(
                     joint_position(character.world_from_character, character.joints[j]),
-                    is_selected ? 5.0f : 2.5f,
-                    overlay.names || is_selected ? character.skeleton->joints[j] : std::string());
+                    is_selected ? 5.0f : 2.5f);
         }
     }
+    draw_names(view, character, overlay, size);
 }
 
 void draw_gizmo(const RenderView& view, const PoseGizmo& gizmo, int held) {

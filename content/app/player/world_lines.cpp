@@ -1,5 +1,6 @@
 #include "content/app/player/world_lines.h"
 
+#include "content/app/player/label_layout.h"
 #include "render/render_view.h"
 
 #include <imgui.h>
@@ -50,6 +51,22 @@ void WorldLines::draw_point(const Vec3& at, float radius, const std::string& lab
     list->AddCircleFilled(position, radius, color_);
     if (!label.empty()) {
         list->AddText({position.x + 2 * radius, position.y - 2 * radius}, color_, label.c_str());
+    }
+}
+
+void WorldLines::draw_label(const Vec3& at, const std::string& label, LabelLayout& layout) {
+    constexpr float kGap = 6.0f;  // to the point [pixels]
+    const Vec4 clip = view_.unjittered_from_world * Vec4(at, 1.0f);
+    if (clip.w < view_.near) {
+        return;
+    }
+    const ImVec2 position = to_screen(clip);
+    const ImVec2 size = ImGui::CalcTextSize(label.c_str());
+    if (const auto corner = layout.place({position.x, position.y}, {size.x, size.y}, kGap)) {
+        ImDrawList* const list = ImGui::GetBackgroundDrawList();
+        // Dark behind bright, so that it can be read before anything.
+        list->AddText({corner->x + 1, corner->y + 1}, IM_COL32(0, 0, 0, 200), label.c_str());
+        list->AddText({corner->x, corner->y}, color_, label.c_str());
     }
 }
 

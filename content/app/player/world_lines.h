@@ -7,6 +7,7 @@
 
 namespace limn {
 
+class LabelLayout;
 struct RenderView;
 
 /// Draws lines and points of the world behind the HUD's panels, clipped at the near plane, without
@@ -19,6 +20,8 @@ class WorldLines {
     void draw_line(const Vec3& from, const Vec3& to, float width = 1.5f);
     /// A dot with an optional label beside it.
     void draw_point(const Vec3& at, float radius = 3.5f, const std::string& label = {});
+    /// A label near a point, where there is room for it.
+    void draw_label(const Vec3& at, const std::string& label, LabelLayout& layout);
 
   private:
     const RenderView& view_;
