@@ -7,13 +7,17 @@
 #include "ecs/snapshot.h"
 #include "systems/update_world.h"
 #include "tests/near.h"
+#include "tests/systems/motor_fixture.h"
 #include "tests/systems/walk_fixture.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace limn::walk_system_test {
@@ -156,6 +160,57 @@ TEST_CASE("walk system: it walks up a step that is walkable, its feet on the gro
         CHECK(above > -0.02f);
         CHECK(above < 0.08f);
     }
+}
+
+TEST_CASE("walk system: up a flight of steps and down again, each foot stands on a tread") {
+    constexpr float kRise = 0.16f;
+    constexpr float kTread = 0.34f;
+    constexpr int kSteps = 8;
+    Promenade promenade;
+    MeshData flight;
+    add_box(flight, {-2, -1, -3}, {2, 0, 1});
+    for (int i = 0; i < kSteps; ++i) {
+        const float z = 1 + kTread * static_cast<float>(i);
+        add_box(flight, {-2, -1, z}, {2, kRise * static_cast<float>(i + 1), 9});
+    }
+    promenade.world.resource<Assets>().meshes.push_back(std::move(flight));
+    promenade.world.create(Transform{}, MeshInstance{.mesh = {0}, .material = {}}, Walkable{});
+    const auto tread = [](float z) {
+        const float steps = std::ceil((z - 1) / kTread);
+        return kRise * std::clamp(steps, 0.0f, static_cast<float>(kSteps));
+    };
+    Walk walk;
+    walk.speed = 0.9f;
+    walk.stride = 0.68f;
+    const Entity walker =
+        promenade.add(walk, {.points = {{{0, 0, 5.5f}, 0.5f}, {{0, 0, 0}, 0.5f}}});
+    promenade.world.add(walker, FootPlant{.speed = 30});
+    float highest = 0;
+    int standing = 0;
+    int off = 0;
+    for (int i = 0; i < 60 * 16; ++i) {
+        promenade.step();
+        const auto& state = promenade.world.get<const WalkState>(walker);
+        const auto& body = promenade.world.get<const WalkBody>(walker);
+        highest = std::max(highest, promenade.world.get<const Transform>(walker).position.y);
+        for (std::uint32_t side = 0; side < 2; ++side) {
+            const bool stands = flight_progress(state, side) >= 1 && state.feet[side].pitch == 0;
+            if (!stands) {
+                continue;
+            }
+            const Vec3 ankle = promenade.joint(walker, body.legs[side].foot);
+            const float above = ankle.y - body.legs[side].ankle.y;
+            // A foot across an edge stands on the one tread or the other.
+            const float error = std::min(
+                std::abs(above - tread(ankle.z - 0.05f)), std::abs(above - tread(ankle.z + 0.05f)));
+            ++standing;
+            off += error > 0.03f ? 1 : 0;
+        }
+    }
+    CHECK(highest == near(kRise * kSteps).epsilon(0.02));
+    CHECK(promenade.world.get<const Transform>(walker).position.y < 0.6f);  // on its way down
+    CHECK(standing > 300);
+    CHECK(off < standing / 20);
 }
 
 TEST_CASE("walk system: without a skeleton, or without an intent, it stands") {
