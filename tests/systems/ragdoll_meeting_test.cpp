@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -146,21 +147,54 @@ TEST_CASE("ragdolls meet: one that falls onto another lies on it" * technique("c
     CHECK(drop_onto_another(false).worst > 0.1);
 }
 
-TEST_CASE("ragdolls meet: two equal ones that collide keep their momentum") {
-    Stage stage({.active = true, .gravity = 0, .collapse = 0});
-    const Entity second = stage.world.create(
-        Transform{.position = {0, 0, 0.6f}, .rotation = Quat(0, 0, 1, 0)}, Skeleton{{0}},
-        Ragdoll{.active = true, .gravity = 0, .collapse = 0});
-    stage.step(2);
-    stage.ragdoll().push = {0, 0, 1.5f};
-    stage.world.get<Ragdoll>(second).push = {0, 0, -1.5f};
-    stage.step();
-    CHECK(momentum_of(stage, second).z == near(-1.5).epsilon(0.01));
-    stage.step(40);
-    // Across the plane in the mean; limbs that meet trunks pass on less than they take.
-    CHECK(std::abs(momentum_of(stage, stage.person).z + momentum_of(stage, second).z) < 0.05);
-    CHECK(std::abs(momentum_of(stage, second).z) < 0.3);  // they have met
-    CHECK(find_overlap(stage, stage.person, second) < 0.01);
+TEST_CASE("ragdolls meet: what one loses the other receives, whatever their masses") {
+    for (const float mass : {75.0f, 25.0f, 300.0f}) {
+        CAPTURE(mass);
+        Stage stage({.active = true, .gravity = 0, .collapse = 0});
+        const Entity second = stage.world.create(
+            Transform{.position = {0.06f, 0, 0.6f}, .rotation = Quat(0, 0, 1, 0)}, Skeleton{{0}},
+            Ragdoll{.active = true, .mass = mass, .gravity = 0, .collapse = 0});
+        stage.step(2);
+        stage.ragdoll().push = {0.2f, 0, 1.5f};
+        stage.world.get<Ragdoll>(second).push = {0, 0.1f, -1.5f};
+        stage.step();
+        const double m = static_cast<double>(mass);
+        const auto sum = [&] {
+            return 75.0 * momentum_of(stage, stage.person) + m * momentum_of(stage, second);
+        };
+        const RigidVec before = sum();
+        const double own = momentum_of(stage, stage.person).z;
+        CHECK(std::abs(before.z - 1.5 * (75 - m)) < 0.01 * (75 + m));
+        for (int i = 0; i < 40; ++i) {
+            stage.step();
+            CHECK(glm::length(sum() - before) < 2e-5 * 1.5 * (75 + m));
+        }
+        CHECK(momentum_of(stage, stage.person).z < own - 0.5);  // they have met
+        CHECK(find_overlap(stage, stage.person, second) < 0.01);
+    }
+}
+
+TEST_CASE("ragdolls meet: those that nothing else touches together receive nothing") {
+    const auto outcome = [](double mass, const RigidVec& received, bool is_free = true) {
+        return RagdollOutcome{
+            .meets = true, .is_free = is_free, .mass = mass, .received = received};
+    };
+    // A chain of three, one alone, and a pair of which one lies on the floor.
+    std::vector<RagdollOutcome> outcomes = {outcome(10, {1, 0, 0}),  outcome(30, {-3, 0, 1}),
+                                            outcome(60, {0, 4, 0}),  {},
+                                            outcome(50, {0, -5, 0}), outcome(50, {0, 9, 0}, false)};
+    outcomes[3].received = {7, 7, 7};
+    const std::vector<std::vector<std::size_t>> neighbors = {{1}, {0, 2, 3}, {1}, {1}, {5}, {4}};
+    const std::vector<RigidVec> changes = balance_momentum(outcomes, neighbors);
+    RigidVec sum(0);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(changes[i] == changes[0]);
+        sum += outcomes[i].received + outcomes[i].mass * changes[i];
+    }
+    CHECK(glm::length(sum) < 1e-12);
+    for (std::size_t i = 3; i < 6; ++i) {
+        CHECK(changes[i] == RigidVec(0));
+    }
 }
 
 TEST_CASE(

@@ -302,6 +302,7 @@ void RagdollContacts::find(
                 RagdollContact contact = make_contact(
                     plane.body, body, {end, end - height * plane.normal, plane.normal});
                 contact.moves = plane.velocity;
+                contact.parts = true;
                 contacts.push_back(contact);
             }
         }

@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <numeric>
+#include <cstdint>
 #include <utility>
 
 // Techniques: char.dynamics
@@ -97,6 +97,39 @@ void find_parting_planes(
             planes.push_back(plane);
         }
     }
+}
+
+std::vector<RigidVec> balance_momentum(
+    std::span<const RagdollOutcome> outcomes, std::span<const std::vector<std::size_t>> neighbors) {
+    std::vector<RigidVec> changes(outcomes.size(), RigidVec(0));
+    std::vector<std::uint8_t> is_done(outcomes.size(), 0);
+    std::vector<std::size_t> group;
+    for (std::size_t first = 0; first < outcomes.size(); ++first) {
+        if (is_done[first] != 0 || !outcomes[first].meets) {
+            continue;
+        }
+        group.assign(1, first);
+        is_done[first] = 1;
+        RigidVec received(0);
+        double mass = 0;
+        bool is_free = true;
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            const RagdollOutcome& one = outcomes[group[i]];
+            received += one.received;
+            mass += one.mass;
+            is_free = is_free && one.is_free;
+            for (const std::size_t other : neighbors[group[i]]) {
+                if (is_done[other] == 0 && outcomes[other].meets) {
+                    is_done[other] = 1;
+                    group.push_back(other);
+                }
+            }
+        }
+        for (const std::size_t i : group) {
+            changes[i] = is_free && mass > 0 ? -received / mass : RigidVec(0);
+        }
+    }
+    return changes;
 }
 
 }  // namespace limn

@@ -11,8 +11,10 @@ namespace limn {
 
 // Ragdolls that meet. Each is solved on its own, so that all can be at once: of two capsules that
 // would touch in a step, both stay on their side of a plane that moves at their common velocity,
-// that of an inelastic impact. Two equal bodies so keep their momentum; a chain of bones pushes
-// with the mass of the capsule that touches.
+// that of an inelastic impact. The plane knows the masses of the two capsules, not of the chains of
+// bones behind them, so that one of both may receive more than the other has lost: what is too much
+// is taken from both at their common mass, which does not change how they move relative to each
+// other (balance_momentum).
 
 /// The capsules of one ragdoll at the beginning of a step.
 struct RagdollBodies {
@@ -38,5 +40,20 @@ struct PartingPlane {
 void find_parting_planes(
     const std::vector<RigidCapsule>& own, const std::vector<RigidCapsule>& other, double dt,
     std::vector<PartingPlane>& planes);
+
+/// What a step did to a ragdoll.
+struct RagdollOutcome {
+    bool gets_up = false;        ///< it has just become inactive
+    bool meets = false;          ///< there are planes between it and others
+    bool is_free = false;        ///< but for these, nothing touched it
+    double mass = 0;             ///< [kg]
+    RigidVec received{0, 0, 0};  ///< momentum, beyond that of gravity and forces [kg m/s]
+};
+
+/// What to add to the velocities of each ragdoll, so that those that meet, directly or through
+/// others, together received nothing; 0 where something else touched one of them, to which the rest
+/// went [m/s].
+[[nodiscard]] std::vector<RigidVec> balance_momentum(
+    std::span<const RagdollOutcome> outcomes, std::span<const std::vector<std::size_t>> neighbors);
 
 }  // namespace limn

@@ -69,6 +69,7 @@ struct RagdollContact {
     RigidVec under = RigidVec(0);  ///< of the other surface, in the other body's space or the world
     RigidVec normal = RigidVec(0);  ///< unit, toward `body`
     RigidVec moves = RigidVec(0);   ///< velocity of the surface, if it is no body's [m/s]
+    bool parts = false;             ///< the surface is between it and another ragdoll
 
     double pressed = 0;   ///< multiplier along the normal, of this substep
     double rubbed = 0;    ///< along the surface

@@ -69,13 +69,12 @@ class RagdollStepper {
         size_ = find_size(c_);
     }
 
-    /// Returns whether it has just become inactive.
-    bool step() {
+    RagdollOutcome step() {
         if (!ragdoll_.active) {
             ragdoll_.active = is_pushed() || is_tripped();
         }
         if (!ragdoll_.active) {
-            return rest();
+            return {.gets_up = rest()};
         }
         const bool starts = state_.is_active == 0 || state_.joints.size() != c_.rig->bones.size();
         if (starts) {
@@ -90,8 +89,9 @@ class RagdollStepper {
                 ragdoll_.active = false;
                 state_ = {};
             }
+            return {};
         }
-        return false;
+        return outcome_;
     }
 
   private:
@@ -328,9 +328,28 @@ class RagdollStepper {
                      * (Vec3(body.velocity) - around->surface.velocity);
     }
 
+    static bool is_support(const RagdollContact& contact) {
+        return contact.other == RagdollContact::kNoBody && !contact.parts;
+    }
+    static RigidVec momentum_of(const RagdollScene& scene) {
+        RigidVec sum(0);
+        for (const RigidCapsule& body : scene.bodies) {
+            sum += body.velocity / body.inverse_mass;
+        }
+        return sum;
+    }
+    static RigidVec pull_on(const RagdollScene& scene, const RigidVec& gravity) {
+        RigidVec sum(0);
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+            sum += (gravity + scene.forces[i]) / scene.bodies[i].inverse_mass;
+        }
+        return sum;
+    }
+
     void simulate() {
         RagdollScene scene;
         load(scene);
+        outcome_ = {.meets = !planes_.empty(), .is_free = true, .mass = size_.mass};
         apply_push(scene);
         const double rate = muscles();
         bool is_pulled = rate > 0;
@@ -354,6 +373,7 @@ class RagdollStepper {
         const RagdollContacts near(
             obstacles, c_.rig->apart, scene.bodies, stage_.dt, std::move(planes_));
         if (sleeps(near, scene, is_pulled)) {
+            outcome_.is_free = false;
             return;
         }
         if (rate > 0) {
@@ -366,11 +386,15 @@ class RagdollStepper {
         options.bounce = static_cast<double>(std::clamp(finite_or(ragdoll_.bounce, 0), 0.0f, 1.0f));
         options.damping = static_cast<double>(std::max(finite_or(ragdoll_.damping, 0), 0.0f));
         options.muscles = rate;
+        const RigidVec before = momentum_of(scene) + stage_.dt * pull_on(scene, options.gravity);
         step_ragdoll(
             scene, stage_.dt, options,
-            [&near](
-                const std::vector<RigidCapsule>& bodies, double left,
-                std::vector<RagdollContact>& contacts) { near.find(bodies, left, contacts); });
+            [&](const std::vector<RigidCapsule>& bodies, double left,
+                std::vector<RagdollContact>& contacts) {
+                near.find(bodies, left, contacts);
+                outcome_.is_free = outcome_.is_free && std::ranges::none_of(contacts, is_support);
+            });
+        outcome_.received = momentum_of(scene) - before;
         store(scene);
         state_.time += static_cast<float>(stage_.dt);
         note_stillness(near, scene);
@@ -427,6 +451,7 @@ class RagdollStepper {
     RagdollState& state_;
     RagdollSize size_;
     std::vector<PartingPlane> planes_;
+    RagdollOutcome outcome_{};
 };
 
 }  // namespace
@@ -440,7 +465,7 @@ float find_thickness(const Ragdoll& ragdoll) {
     return std::clamp(finite_or(ragdoll.thickness, 1), 0.1f, 10.0f);
 }
 
-bool step_ragdoll_character(
+RagdollOutcome step_ragdoll_character(
     const RagdollStage& stage, const RagdollCharacter& character,
     std::vector<PartingPlane> planes) {
     return RagdollStepper(stage, character, std::move(planes)).step();

@@ -42,9 +42,8 @@ struct RagdollCharacter {
     const MorphWeights* morph = nullptr;
 };
 
-/// A step, of `planes` between it and other ragdolls too. Returns whether it has just become
-/// inactive.
-bool step_ragdoll_character(
+/// A step, of `planes` between it and other ragdolls too.
+RagdollOutcome step_ragdoll_character(
     const RagdollStage& stage, const RagdollCharacter& character, std::vector<PartingPlane> planes);
 
 /// The capsules of an active ragdoll that meets others, where its state has them; else none.

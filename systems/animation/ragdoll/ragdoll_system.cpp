@@ -210,7 +210,7 @@ void update_ragdolls(
     });
     // What they meet is where it was before any of them moves.
     std::vector<RagdollBodies> placed(characters.size());
-    std::vector<std::uint8_t> gets_up(characters.size(), 0);
+    std::vector<RagdollOutcome> outcomes(characters.size());
     parallel_for(characters.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             placed[i] = bound_ragdoll(find_meeting_bodies(characters[i]), stage.dt);
@@ -223,13 +223,19 @@ void update_ragdolls(
             for (const std::size_t k : neighbors[i]) {
                 find_parting_planes(placed[i].bodies, placed[k].bodies, stage.dt, planes);
             }
-            gets_up[i] = step_ragdoll_character(stage, characters[i], std::move(planes)) ? 1 : 0;
+            outcomes[i] = step_ragdoll_character(stage, characters[i], std::move(planes));
         }
     });
+    const std::vector<RigidVec> changes = balance_momentum(outcomes, neighbors);
     for (std::size_t i = 0; i < characters.size(); ++i) {
         const RagdollCharacter& one = characters[i];
+        if (changes[i] != RigidVec(0)) {
+            for (Vec3& velocity : one.state->velocities) {
+                velocity = Vec3(RigidVec(velocity) + changes[i]);
+            }
+        }
         const Entity entity = one.entity;
-        Transform* const place = gets_up[i] != 0 ? transforms.find<Transform>(entity) : nullptr;
+        Transform* const place = outcomes[i].gets_up ? transforms.find<Transform>(entity) : nullptr;
         if (place != nullptr && around.parents.find<const Parent>(entity) == nullptr) {
             move_to_body(
                 *one.rig, *one.state, matrix_scale(one.world), find_thickness(*one.ragdoll),
