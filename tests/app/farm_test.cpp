@@ -119,6 +119,7 @@ TEST_CASE("farm: lists of frames are read and written") {
     }
     CHECK(write_frame_list({0, 1, 2, 3}) == "0:3");
     CHECK(write_frame_list({0, 4, 8, 9}) == "0:8:4,9");
+    CHECK(write_frame_list({0, 4}) == "0,4");
     // Whatever the list, what is written is read as the same.
     std::uint64_t state = 1;
     for (int round = 0; round < 200; ++round) {
@@ -190,7 +191,8 @@ TEST_CASE("farm: a bad job.json is refused with file, what was found and what wa
     };
     for (const Change& change :
          {Change{"\"chunk\": 4", "\"chunk\": 0", "found chunk 0"},
-          Change{"\"chunk\": 4", "\"chunk\": \"x\"", "\"chunk\": found string, expected another type"},
+          Change{
+              "\"chunk\": 4", "\"chunk\": \"x\"", "\"chunk\": found string, expected another type"},
           Change{
               "\"scheduler\": \"local\"", "\"scheduler\": \"cron\"",
               "expected one of local parallel slurm"},
