@@ -33,9 +33,9 @@ MeshData finish_half(BodyMesh& half, const PersonFrame& frame, float crease, boo
 }
 
 /// A garment and what is sewn onto it, which keeps all its triangles.
-MeshData finish_garment(BodyMesh& half, BodyMesh& trims, const PersonFrame& frame) {
+MeshData finish_garment(BodyMesh& half, BodyMesh& trims, const PersonFrame& frame, float thinning) {
     MeshData mesh = finish_half(half, frame, kClothCrease, true);
-    thin_out(mesh, frame, kThinning, kClothCrease);
+    thin_out(mesh, frame, thinning, kClothCrease);
     if (!trims.vertices.empty()) {
         append_part(mesh, finish_half(trims, frame, kTrimCrease, true));
     }
@@ -82,11 +82,13 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     case PersonPart::Shirt:
         add_shirt(mesh, frame);
         add_shirt_trims(trims, frame);
-        return finish_garment(mesh, trims, frame);
+        // What has no trims affords more triangles.
+        return finish_garment(
+            mesh, trims, frame, (trims.vertices.empty() ? 0.5f : 1.0f) * kThinning);
     case PersonPart::Trousers:
         add_trousers(mesh, frame);
         add_trouser_trims(trims, frame);
-        return finish_garment(mesh, trims, frame);
+        return finish_garment(mesh, trims, frame, kThinning);
     case PersonPart::Shoes:
         add_shoe(mesh, frame);
         whole = finish_half(mesh, frame, kShoeCrease, false);

@@ -51,7 +51,7 @@ BodySection shirt_section(const PersonFrame& frame, float height) {
     const float hem = shirt_hem(frame);
     if (top == PersonTop::Jumper) {  // a band of ribs holds it
         const float band = 1 - glm::smoothstep(hem + 0.045f, hem + 0.065f, height);
-        return mixed(hanging, grown(body, 0.009f), 0.8f * band);
+        return mixed(hanging, grown(body, 0.015f), 0.8f * band);
     }
     return grown(hanging, 0.05f * std::max(0.90f - height, 0.0f));
 }

@@ -128,9 +128,11 @@ WovenHead weave_head(const PersonFrame& frame) {
         head.positions.push_back(in_body(frame, wrapped[v]));
         const bool lash = vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
                           && std::sin(vertex.angle) > 0.1f;
-        head.colors.push_back(
-            (lash ? 0.4f : 1.0f) * frame.look.skin_color
-            * head_skin_color(vertex, wrapped[v], shape));
+        Vec3 tint = head_skin_color(vertex, wrapped[v], shape);
+        if (vertex.loops == HeadLoops::Mouth) {  // few triangles spread it: a little less of it
+            tint = glm::mix(Vec3(1), tint, glm::mix(0.8f, 0.5f, frame.man));
+        }
+        head.colors.push_back((lash ? 0.5f : 1.0f) * frame.look.skin_color * tint);
         head.charts.push_back(vertex.chart);
         if (vertex.loops == HeadLoops::None && vertex.chart.y == kHeadRows) {
             neck[static_cast<int>(std::lround(vertex.chart.x))] = v;
