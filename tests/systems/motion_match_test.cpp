@@ -91,7 +91,7 @@ TEST_CASE(
             const Vec3 begin = stage.at().position;
             stage.step(60);
             const float mean = glm::dot(stage.at().position - begin, way);
-            CHECK(mean == doctest::Approx(speed).epsilon(0.1));
+            CHECK(std::abs(mean - speed) < 0.1f * speed);
             CHECK(glm::dot(stage.at().rotation * Vec3(0, 0, 1), way) > 0.98f);
             stage.go(Vec3(0));
             stage.step(180);
@@ -202,7 +202,7 @@ TEST_CASE("motion match: steps of 0 s change nothing, one of 1 s is finite and g
     CHECK(stage.joint(6) == foot);
     stage.step(1, 1);
     CHECK(is_finite(stage.at().position));
-    CHECK(glm::distance(stage.at().position, at.position) == doctest::Approx(1.3f).epsilon(0.15));
+    CHECK(std::abs(glm::distance(stage.at().position, at.position) - 1.3f) < 0.2f);
 }
 
 TEST_CASE("motion match: missing and short clips, no legs, NaN: no crash, and it stands") {

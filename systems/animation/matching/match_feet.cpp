@@ -85,11 +85,11 @@ float needed_sink(const Vec3& hip, const Vec3& ankle, float leg) {
 }
 
 /// Whether a planted foot is too far behind for its leg.
-bool is_stretched(const FootAim& aim, const Transform& at, const MatchFoot& foot) {
+bool is_stretched(const FootAim& aim, const Transform& at, float deepest, const MatchFoot& foot) {
     const Quat back = glm::conjugate(at.rotation);
     const Vec3 ball = back * (foot.place - at.position) / uniform_scale(at);
     const Vec3 ankle = ball - back * (foot.rotation * aim.ball);
-    return needed_sink(aim.hip, ankle, aim.leg) > kDeepestSink * aim.leg;
+    return needed_sink(aim.hip, ankle, aim.leg) > deepest * aim.leg;
 }
 
 }  // namespace
@@ -157,7 +157,9 @@ void step_foot(
     if (!aim.contact && foot.planted == kPulledOff) {
         foot.planted = 0;
     }
-    const bool pulled = far > reach || is_stretched(aim, at, foot);
+    // A foot lands where its leg reaches, so that the hips do not drop.
+    const float deepest = was_planted ? kDeepestSink : -kHipsEase;
+    const bool pulled = far > reach || is_stretched(aim, at, deepest, foot);
     now.contact = aim.contact && foot.planted != kPulledOff && !pulled;
     const auto show = [&] {
         FootPoint target = point_in(aim.local, at);

@@ -218,9 +218,9 @@ void begin_transition(
     thread_local LocalPose pose;
     sample_clip_pose(context, state, 0, pose);
     for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
-        capture_foot(
-            find_aim(context, state, i, pose), transform, aim_rate(context, state, i, transform),
-            state.feet[i]);
+        FootAim aim = find_aim(context, state, i, pose);
+        aim.contact = aim.contact && state.feet[i].planted == 1;  // otherwise it has to land first
+        capture_foot(aim, transform, aim_rate(context, state, i, transform), state.feet[i]);
     }
 }
 
