@@ -523,6 +523,30 @@ TEST_CASE(
         != std::string::npos);
 }
 
+TEST_CASE("farm: the node whose renderings differ from those of several others is named") {
+    const TemporaryFolder folder;
+    FarmJob job = make_job(folder, 4);
+    job.verify = 1;
+    REQUIRE(save_farm_job(job).ok());
+    const char* const nodes[][2] = {{"n1", "n3"}, {"n3", "n2"}, {"n1", "n2"}, {"n2", "n1"}};
+    for (const int frame : job.frames) {
+        finish_frame(job, frame, nodes[frame][0]);
+        FrameState second = read_frame_state(job, frame);
+        second.attempts[0].node = nodes[frame][1];
+        second.pixels += frame < 2 ? 1 : 0;  // those with n3
+        second.psnr = 80;
+        REQUIRE(write_frame_state(job, second, StateFile::Verify).ok());
+    }
+    const FarmStatus status = read_farm_status(job);
+    CHECK(status.differences.size() == 2);
+    CHECK(status.suspect == "n3");
+    const Status checked = run_farm_check(job.folder, true);
+    REQUIRE_FALSE(checked.ok());
+    CHECK(checked.error().message.find("most of them with n3") != std::string::npos);
+    job.frames = {0};
+    CHECK(read_farm_status(job).suspect.empty());  // either may be wrong
+}
+
 TEST_CASE(
     "farm: check finds frames that are missing, empty, cut off, of another size or another image") {
     const TemporaryFolder folder;

@@ -67,7 +67,7 @@ Status run_farm_check(const std::string& folder, bool json) {
     const FarmStatus status = read_farm_status(job);
     int bad_renderings = 0;
     for (const std::string& difference : status.differences) {
-        bad_renderings += difference.find("expected") != std::string::npos ? 1 : 0;
+        bad_renderings += must_not_differ(difference) ? 1 : 0;
     }
     if (json) {
         FarmJson list = FarmJson::array();
@@ -102,8 +102,9 @@ Status run_farm_check(const std::string& folder, bool json) {
     }
     if (!problems.empty() || bad_renderings > 0) {
         return fail(
-            "{}: {} frames are missing or damaged, {} renderings differ", job.folder,
-            problems.size(), bad_renderings);
+            "{}: {} frames are missing or damaged, {} renderings differ{}", job.folder,
+            problems.size(), bad_renderings,
+            status.suspect.empty() ? "" : ", most of them with " + status.suspect);
     }
     return Done{};
 }

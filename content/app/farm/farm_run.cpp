@@ -134,7 +134,7 @@ std::string failure_of(const FarmJob& job, const FarmStatus& status) {
         return text;
     }
     for (const std::string& difference : status.differences) {
-        if (difference.find("expected") != std::string::npos) {
+        if (must_not_differ(difference)) {
             return job.folder + ": " + difference;
         }
     }

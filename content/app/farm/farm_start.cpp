@@ -287,7 +287,7 @@ Status watch(const FarmJob& job, pid_t coordinator, bool cancel_on_interrupt) {
         const FarmStatus status = read_farm_status(job);
         cost = std::chrono::duration<double>(Clock::now() - begin).count();
         if (terminal) {
-            fmt::print(stderr, "\r\033[K{}", summarize_status(status));
+            fmt::print(stderr, "\r\033[K{}", summarize_status(job, status));
             std::fflush(stderr);
         }
         if (over) {
@@ -424,7 +424,7 @@ Status run_farm_cancel(const FarmJobOptions& options) {
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
     static_cast<void>(finish_job(job, {}));  // its outcome is that it was cancelled
-    fmt::print("{}: cancelled, {}\n", job.folder, summarize_status(read_farm_status(job)));
+    fmt::print("{}: cancelled, {}\n", job.folder, summarize_status(job, read_farm_status(job)));
     return Done{};
 }
 

@@ -70,6 +70,17 @@ std::string compare_renderings(const FrameState& first, const FrameState& second
     return fmt::format("{}: {}, as they may be ({} and {})", where, found, a.renderer, b.renderer);
 }
 
+/// The name with the highest count, if it is the only one.
+std::string most_frequent(const std::map<std::string, int>& counts) {
+    int highest = 0;
+    std::string name;
+    for (const auto& [each, count] : counts) {
+        name = count > highest ? each : count == highest ? "" : name;
+        highest = std::max(highest, count);
+    }
+    return name;
+}
+
 /// Frames and nodes from the files of workers.
 void count_workers(const FarmJob& job, FarmStatus& status, NodesByName& nodes) {
     for (const FarmWorker& worker : list_workers(job)) {
@@ -173,6 +184,10 @@ FarmJson failures_json(const std::vector<FailedFrame>& frames) {
 
 }  // namespace
 
+bool must_not_differ(const std::string& difference) {
+    return difference.find("expected") != std::string::npos;
+}
+
 FarmStatus read_farm_status(const FarmJob& job) {
     FarmStatus status;
     status.total = static_cast<int>(job.frames.size());
@@ -197,6 +212,7 @@ FarmStatus read_farm_status(const FarmJob& job) {
     }
     const std::vector<int> twice = frames_to_verify(job);
     status.to_verify = static_cast<int>(twice.size());
+    std::map<std::string, int> differing;  // renderings by node
     for (const int frame : twice) {
         const FrameState first = read_frame_state(job, frame);
         const FrameState second = read_frame_state(job, frame, StateFile::Verify);
@@ -209,8 +225,13 @@ FarmStatus read_farm_status(const FarmJob& job) {
             if (!difference.empty()) {
                 status.differences.push_back(difference);
             }
+            if (must_not_differ(difference)) {
+                ++differing[first.attempts.back().node];
+                ++differing[second.attempts.back().node];
+            }
         }
     }
+    status.suspect = most_frequent(differing);
     for (const FarmNode& node : list_nodes(job)) {
         node_of(nodes, node.name).node = node;
     }
@@ -224,12 +245,13 @@ FarmStatus read_farm_status(const FarmJob& job) {
     return status;
 }
 
-std::string summarize_status(const FarmStatus& status) {
+std::string summarize_status(const FarmJob& job, const FarmStatus& status) {
     std::string text = fmt::format(
-        "{} of {} frames done, {} running, {} failed, {} waiting", status.done, status.total,
-        status.running, status.failed, status.waiting());
+        "{} of {} {} done, {} running, {} failed, {} waiting", status.done, status.total,
+        job.tasks.empty() ? "frames" : "tasks", status.running, status.failed, status.waiting());
     if (status.done > 0) {
-        text += fmt::format("; {:.2f} s a frame", status.frame_seconds);
+        text += fmt::format(
+            "; {:.2f} s a {}", status.frame_seconds, job.tasks.empty() ? "frame" : "task");
     }
     if (status.left_seconds >= 0) {
         text += ", " + duration(status.left_seconds) + " left";
@@ -238,7 +260,7 @@ std::string summarize_status(const FarmStatus& status) {
 }
 
 std::string describe_status(const FarmJob& job, const FarmStatus& status) {
-    std::string text = job.folder + ": " + summarize_status(status) + "\n";
+    std::string text = job.folder + ": " + summarize_status(job, status) + "\n";
     if (status.load_seconds > 0) {
         text +=
             fmt::format("  loading takes {:.2f} s a chunk of {}", status.load_seconds, job.chunk);
@@ -260,6 +282,9 @@ std::string describe_status(const FarmJob& job, const FarmStatus& status) {
     }
     for (const std::string& difference : status.differences) {
         text += "  " + difference + "\n";
+    }
+    if (!status.suspect.empty()) {
+        text += "  most of these are with " + status.suspect + ": look there first\n";
     }
     if (status.cancelled) {
         text += "  cancelled; limn farm resume goes on\n";
@@ -306,7 +331,8 @@ std::string status_json(const FarmJob& job, const FarmStatus& status) {
         {"verified", status.verified},
         {"verified_here", status.verified_here},
         {"verified_bits", status.verified_bits},
-        {"differences", status.differences}};
+        {"differences", status.differences},
+        {"suspect", status.suspect}};
     return farm_json_text(object, 1);
 }
 

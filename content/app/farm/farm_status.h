@@ -47,14 +47,18 @@ struct FarmStatus {
     int verified = 0;                      ///< those that were
     std::vector<std::string> differences;  ///< what those found, a line each
     int verified_here = 0;                 ///< of them on the same node: no other was there
+    std::string suspect;                   ///< the node in more of them than any other; empty: none
     int verified_bits = 0;                 ///< of them equal bit for bit
 };
+
+/// Whether one of FarmStatus::differences is an error, not another renderer's rounding.
+[[nodiscard]] bool must_not_differ(const std::string& difference);
 
 [[nodiscard]] FarmStatus read_farm_status(const FarmJob& job);
 
 /// Lines for a person. `brief`: one line, without nodes.
 [[nodiscard]] std::string describe_status(const FarmJob& job, const FarmStatus& status);
-[[nodiscard]] std::string summarize_status(const FarmStatus& status);
+[[nodiscard]] std::string summarize_status(const FarmJob& job, const FarmStatus& status);
 
 /// The same as JSON.
 [[nodiscard]] std::string status_json(const FarmJob& job, const FarmStatus& status);
