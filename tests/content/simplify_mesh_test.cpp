@@ -38,6 +38,8 @@ TEST_CASE(
     for (const int triangles : {600, 150, 60}) {
         const MeshData merged =
             make_simplified({.mesh = {0}, .triangles = triangles, .merge = true}, assets);
+        CAPTURE(triangles);
+        CAPTURE(merged.indices.size());
         CHECK(merged.indices.size() <= 3 * static_cast<std::size_t>(triangles));
         CHECK(merged.indices.size() >= 3 * static_cast<std::size_t>(triangles) / 2);
         CHECK(merged.positions.size() < merged.indices.size());
