@@ -24,6 +24,23 @@ Bounds box_of(const MeshData& mesh) {
     return box;
 }
 
+/// Whether a triangle joins the lower legs, which touch in no triangle of a person.
+bool joins_legs(const MeshData& mesh) {
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        bool left = false;
+        bool right = false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = mesh.positions[mesh.indices[i + k]];
+            left = left || (p.y < 0.5f && p.x > 0.02f);
+            right = right || (p.y < 0.5f && p.x < -0.02f);
+        }
+        if (left && right) {
+            return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -35,6 +52,7 @@ TEST_CASE(
     const Bounds whole = box_of(person);
     const MeshData kept = make_simplified({.mesh = {0}, .triangles = 150}, assets);
     CHECK(kept.indices.size() > 3 * 1000);  // closed parts stay closed
+    CHECK_FALSE(joins_legs(person));
     for (const int triangles : {600, 150, 60}) {
         const MeshData merged =
             make_simplified({.mesh = {0}, .triangles = triangles, .merge = true}, assets);
@@ -42,6 +60,7 @@ TEST_CASE(
         CAPTURE(merged.indices.size());
         CHECK(merged.indices.size() <= 3 * static_cast<std::size_t>(triangles));
         CHECK(merged.indices.size() >= 3 * static_cast<std::size_t>(triangles) / 2);
+        CHECK_FALSE(joins_legs(merged));
         CHECK(merged.positions.size() < merged.indices.size());
         CHECK(merged.colors.size() == merged.positions.size());
         CHECK(merged.skin.first.size() == merged.positions.size() + 1);

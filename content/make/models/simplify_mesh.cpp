@@ -34,6 +34,43 @@ Vec3 extent_of(const MeshData& mesh, const std::vector<std::uint32_t>& indices) 
     return high - low;
 }
 
+/// The joint with the largest weight at a vertex.
+std::uint32_t main_joint(const SkinWeights& skin, std::size_t vertex) {
+    const auto first = skin.weights.begin() + skin.first[vertex];
+    const auto last = skin.weights.begin() + skin.first[vertex + 1];
+    return first == last ? 0
+                         : skin.joints[static_cast<std::size_t>(
+                             std::max_element(first, last) - skin.weights.begin())];
+}
+
+/// Positions with what moves with each joint `spread` times as far again from the middle: legs and
+/// arms that hang side by side then lie in different cells, and are not joined by webs.
+std::vector<Vec3> spread_limbs(const MeshData& mesh, float spread) {
+    std::vector<Vec3> positions = mesh.positions;
+    if (mesh.skin.empty() || spread == 0) {
+        return positions;
+    }
+    struct Part {
+        Vec3 sum = {0, 0, 0};
+        float count = 0;
+    };
+    std::vector<Part> parts;
+    Part whole;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        const std::uint32_t joint = main_joint(mesh.skin, v);
+        parts.resize(std::max<std::size_t>(parts.size(), joint + 1));
+        parts[joint].sum += positions[v];
+        parts[joint].count += 1;
+        whole.sum += positions[v];
+        whole.count += 1;
+    }
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        const Part& part = parts[main_joint(mesh.skin, v)];
+        positions[v] += spread * (part.sum / part.count - whole.sum / whole.count);
+    }
+    return positions;
+}
+
 }  // namespace
 
 void simplify_mesh(MeshData& mesh, std::size_t triangles) {
@@ -51,30 +88,26 @@ void merge_mesh(MeshData& mesh, std::size_t triangles) {
     if (3 * triangles >= mesh.indices.size()) {
         return;
     }
-    // A coarse grid may merge a thin part, as a leg, to nothing: narrow axes get smaller cells,
-    // too, and the grid that keeps the size of the whole best is used.
     constexpr float kAnyError = 1.0f;
-    constexpr float kStretches[] = {1.0f, 1.5f, 2.0f, 3.0f};
+    constexpr float kSmallLoss = 0.1f;  // of the size
+    constexpr float kSpreads[] = {4.0f, 3.0f, 2.0f, 1.0f, 0.0f};
     const Vec3 size = extent_of(mesh, mesh.indices);
-    const float longest = std::max({size.x, size.y, size.z});
     std::vector<std::uint32_t> best;
     float least_lost = std::numeric_limits<float>::max();
-    for (const float stretch : kStretches) {
-        const Vec3 scale =
-            glm::mix(Vec3(stretch), Vec3(1), glm::greaterThan(size, Vec3(0.7f * longest)));
-        std::vector<Vec3> positions = mesh.positions;
-        for (Vec3& p : positions) {
-            p *= scale;
-        }
+    for (const float spread : kSpreads) {
+        const std::vector<Vec3> positions = spread_limbs(mesh, spread);
         std::vector<std::uint32_t> indices(mesh.indices.size());
         indices.resize(meshopt_simplifySloppy(
             indices.data(), mesh.indices.data(), mesh.indices.size(), &positions[0].x,
             positions.size(), sizeof(Vec3), 3 * triangles, kAnyError));
         const Vec3 lost = size - extent_of(mesh, indices);
         const float loss = std::max({lost.x, lost.y, lost.z});
-        if (loss < 0.9f * least_lost) {  // only for much less: cubes have the best shapes
+        if (loss < least_lost) {
             least_lost = loss;
             best = std::move(indices);
+        }
+        if (loss < kSmallLoss * std::max({size.x, size.y, size.z})) {
+            break;  // limbs far apart have the best shapes
         }
     }
     keep_triangles(mesh, std::move(best));
