@@ -13,6 +13,7 @@
 #include "content/load/files/atomic_file.h"
 #include "content/load/files/png_file.h"
 #include "tests/app/run_program.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "content/app/commands/render_frames.h"
 
 #include "content/app/commands/exposure_samples.h"
+#include "ecs/base/text.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"

@@ -1,5 +1,7 @@
 #include "content/app/farm/child_process.h"
 
+#include "ecs/base/text.h"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>

@@ -5,6 +5,7 @@
 #include "content/app/farm/farm_status.h"
 #include "content/app/farm/frame_file.h"
 #include "ecs/base/jobs.h"
+#include "ecs/base/text.h"
 
 #include <fmt/format.h>
 

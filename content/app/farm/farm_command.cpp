@@ -138,7 +138,7 @@ void add_start(
         app->add_option("--partition", options.partition, "of the cluster; default: its own");
     }
     add_watching(*app, options.detach, options.cancel_on_interrupt);
-    app->callback([&options, kept, scheduler, app] {
+    app->callback([&options, kept, scheduler] {
         options.scheduler = scheduler;
         options.words = given_words(kept);
         if (!options.tasks.empty()) {
@@ -263,13 +263,13 @@ Command add_farm(CLI::App& program, FarmCommandOptions& options) {
         "is tried on another node; a node on which three frames failed is left out.\n"
         "limn farm local --help lists the options.\n\n"
         "Examples:\n"
-        "  limn farm local gallery --frames 0:99 -o gallery.farm/frame_%05d.png --size 320x180\n"
+        "  limn farm local gallery --frames 0:99 -o shot/frame_%05d.png --size 320x180\n"
         "  limn farm parallel gallery --frames 0:99 -o 'frame_%05d.exr' --hosts a,b\n"
         "  limn farm slurm gallery --frames 0:299 --fps 30 -o gallery.mp4 --verify 5%\n"
         "  limn farm local -- quality --all\n"
-        "  limn farm status gallery.farm\n"
-        "  limn farm resume gallery.farm\n"
-        "  limn farm check gallery.farm");
+        "  limn farm status shot\n"
+        "  limn farm resume shot\n"
+        "  limn farm check shot");
     return {farm, [farm, &options] { return run_chosen(*farm, options); }};
 }
 

@@ -3,6 +3,7 @@
 #include "content/app/farm/child_process.h"
 #include "content/app/farm/farm_job.h"
 #include "content/load/files/atomic_file.h"
+#include "ecs/base/text.h"
 
 #include <fmt/format.h>
 

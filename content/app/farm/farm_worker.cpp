@@ -5,6 +5,7 @@
 #include "content/app/farm/child_process.h"
 #include "content/app/farm/farm_job.h"
 #include "content/app/farm/frame_file.h"
+#include "ecs/base/text.h"
 
 #include <fmt/format.h>
 

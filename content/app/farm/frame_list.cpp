@@ -1,6 +1,7 @@
 #include "content/app/farm/frame_list.h"
 
 #include "content/app/commands/command_values.h"
+#include "ecs/base/text.h"
 
 #include <fmt/format.h>
 
@@ -37,8 +38,7 @@ Result<std::vector<int>> parse_frame_list(std::string_view text) {
         LIMN_TRY(add_range(part, frames));
     }
     std::ranges::sort(frames);
-    const auto repeated = std::ranges::unique(frames);
-    frames.erase(repeated.begin(), repeated.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     return frames;
 }
 
