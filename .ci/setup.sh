@@ -10,7 +10,7 @@ packages=(
 )
 ci_packages=(
     clang clang-format libclang-rt-14-dev mesa-vulkan-drivers espeak-ng
-    slurmctld slurmd slurm-client munge parallel openssh-server openssh-client jq  # tests/farm.sh
+    slurmctld slurmd slurm-client munge parallel openssh-server openssh-client jq procps  # tests/farm.sh
 )
 
 say() { printf '%s\n' "$*" >&2; }

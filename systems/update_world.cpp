@@ -9,6 +9,7 @@
 #include "systems/animation/crowd_pose_system.h"
 #include "systems/animation/deformer_system.h"
 #include "systems/animation/driven_shapes_system.h"
+#include "systems/animation/graph/graph_edit_system.h"
 #include "systems/animation/graph/motion_graph_system.h"
 #include "systems/animation/ik/foot_ground_system.h"
 #include "systems/animation/ik/ik_goal_system.h"
@@ -120,6 +121,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_rotation_tracks>(Move, Both);
     systems.add<update_wrinkle_tracks>(Move, Both);
     systems.add<add_motion_states>(Create, Both);
+    systems.add<apply_graph_edits>(Create, Both);
     systems.add<prepare_motion_plans>(Create, Both);
     systems.add<update_motion_graphs>(Move);
     systems.add<add_match_states>(Create, Both);

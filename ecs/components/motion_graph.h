@@ -29,6 +29,7 @@ struct GraphClip {
     ClipId clip{};
     Vec2 at = {0, 0};
     float travel = 0.0f;
+    bool operator==(const GraphClip&) const = default;
 };
 
 LIMN_FIELDS(GraphClip) {
@@ -46,6 +47,7 @@ struct GraphState {
     GraphParameter y = GraphParameter::None;
     float speed = 1.0f;
     bool loop = true;
+    bool operator==(const GraphState&) const = default;
 };
 
 LIMN_FIELDS(GraphState) {
@@ -83,6 +85,7 @@ struct GraphTransition {
     float time = 0.0f;
     bool restart = false;
     bool interruptible = true;
+    bool operator==(const GraphTransition&) const = default;
 };
 
 LIMN_FIELDS(GraphTransition) {
@@ -150,7 +153,7 @@ LIMN_FIELDS(GraphLayer) {
 /// Largest number of clips of a state.
 inline constexpr std::size_t kMaxGraphClips = 16;
 
-/// A motion graph; immutable. The first state is the initial one.
+/// A motion graph; only a MotionGraphEdit changes it. The first state is the initial one.
 struct MotionGraphData {
     std::string name{};
     std::vector<GraphState> states{};
@@ -167,9 +170,16 @@ LIMN_FIELDS(MotionGraphData) {
         feet, "joints whose contacts synchronize the clips, in the order in which they touch down");
 }
 
+/// What replaces a motion graph while characters play it.
+struct MotionGraphEdit {
+    MotionGraphId graph{};   ///< which one
+    MotionGraphData data{};  ///< valid: its transitions lead to states that exist
+};
+
 /// Resource: all motion graphs. Entries are only appended, and indices never change.
 struct MotionGraphs {
     std::vector<MotionGraphData> graphs{};
+    std::vector<MotionGraphEdit> edits{};  ///< of the next step, in this order
 };
 
 /// How the entity moves over the ground.

@@ -18,11 +18,11 @@ free_port() {
     (exec 3<>/dev/tcp/127.0.0.1/$p) 2>/dev/null || { echo $p; return; }
   done
 }
-tree() { local c; for c in $(pgrep -P "$1" || true); do tree $c; done; echo "$1"; }
+tree() { local c; for c in $(pgrep -P "$1" || true); do tree $c; done; echo "$1"; }   # none: a leaf
 kill_host() {
   local p; p=$(cat $D/$1.pid 2>/dev/null) || return 0
   tr '\0' ' ' </proc/$p/cmdline 2>/dev/null | grep -q "$D/$1.conf" || return 0
-  kill -STOP $p; kill -KILL $(tree $p) 2>/dev/null || true
+  kill -STOP $p; kill -KILL $(tree $p) 2>/dev/null || true   # some ended
 }
 # FARM_ENV_nodeA="NAME=VALUE ...": variables of that host. FARM_HIDE_nodeA=FOLDER: that host finds an empty folder there.
 start_host() {

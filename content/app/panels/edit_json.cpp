@@ -343,6 +343,8 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
             }
             break;
         }
+        case LevelPart::MotionGraph:
+            break;  // only in files
         }
     }
     if (!entities.items.empty()) {

@@ -81,6 +81,8 @@ bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value)
         return apply_to_resource(world, value);
     case LevelPart::Material:
         return apply_to_material(world, edit.material, value);
+    case LevelPart::MotionGraph:
+        break;  // only in files
     }
     return false;
 }

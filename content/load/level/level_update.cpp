@@ -80,6 +80,11 @@ find_changes(const World& world, const LevelFields& before, const LevelFields& n
             changes, AnyComponent::of(before.materials[i]),
             {LevelPart::Material, {}, i, AnyComponent::of(now.materials[i]), {}});
     }
+    for (std::uint32_t i = 0; i < now.motion_graphs.size(); ++i) {
+        add_change(
+            changes, AnyComponent::of(before.motion_graphs[i]),
+            {LevelPart::MotionGraph, {}, i, AnyComponent::of(now.motion_graphs[i]), {}});
+    }
     return changes;
 }
 
@@ -108,6 +113,10 @@ void apply_change(World& world, const LevelChange& change) {
         ++assets.material_version;
         break;
     }
+    case LevelPart::MotionGraph:
+        world.resource<MotionGraphs>().edits.push_back(
+            {{change.material}, change.now.as<MotionGraphData>()});
+        break;
     }
 }
 
@@ -206,6 +215,7 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     fields.node_changes = level.node_changes;
     fields.resources = level.resources;
     fields.materials = level.assets.materials;
+    fields.motion_graphs = level.motion_graphs;
     const Assets& assets = level.assets;
     const auto add_names = [&](const auto& list) {
         for (const auto& asset : list) {
@@ -218,6 +228,7 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     add_names(assets.meshes);
     add_names(assets.paths);
     add_names(level.motion_graphs);
+    add_names(assets.clips);  // which graphs refer to
     return fields;
 }
 

@@ -5,6 +5,7 @@
 #include "content/load/level/level_show.h"
 #include "ecs/any_component.h"
 #include "ecs/base/result.h"
+#include "ecs/components/motion_graph.h"
 #include "ecs/components/surface.h"
 #include "ecs/entity.h"
 
@@ -29,25 +30,28 @@ struct LevelFields {
     std::vector<std::string> assets;                    ///< names of all, which indices refer to
     std::vector<AnyComponent> resources;
     std::vector<Material> materials;
+    std::vector<MotionGraphData> motion_graphs;
     std::vector<NodeChange> node_changes;  ///< of glTF files
 };
 
-enum class LevelPart : std::uint8_t { Component, Resource, Material };
+enum class LevelPart : std::uint8_t { Component, Resource, Material, MotionGraph };
 
-/// Fields of a component, resource or material whose values in the files have changed.
+/// Fields of a component, resource, material or motion graph whose values in the files have
+/// changed.
 struct LevelChange {
     LevelPart part = LevelPart::Component;
     Entity entity;                         ///< of a Component
-    std::uint32_t material = 0;            ///< index into Assets
+    std::uint32_t material = 0;            ///< index into Assets, or of a motion graph
     AnyComponent now;                      ///< the values in the files
     std::vector<const FieldInfo*> fields;  ///< the changed ones, at least one
 };
 
 /// Loads the level again and sets the fields of components, resources and materials whose values in
 /// the files have changed, and the level's events; also applies what new events set at the start of
-/// the level. Returns the changes. Fails, and changes nothing, with the loader's error, or if
-/// entities, kinds of components, changes of glTF nodes or assets differ, which needs a reload.
-/// `world` must have been empty when the level was spawned.
+/// the level. Motion graphs that have changed are replaced in the next step (MotionGraphs::edits).
+/// Returns the changes. Fails, and changes nothing, with the loader's error, or if entities, kinds
+/// of components, changes of glTF nodes or assets differ, which needs a reload. `world` must have
+/// been empty when the level was spawned.
 [[nodiscard]] Result<std::vector<LevelChange>> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
 

@@ -2,7 +2,7 @@
 
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
-#include "systems/animation/graph/inertial_offset.h"
+#include "systems/animation/graph/graph_transition.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -16,12 +16,11 @@ namespace limn {
 
 namespace {
 
-constexpr float kVelocityInterval = 1.0f / 1000.0f;  ///< over which velocities are measured [s]
-constexpr int kMaxEnds = 4;                          ///< of clips, in one step
-constexpr float kLastPhase = 1.0f - 1e-6f;           ///< still moving: the pose is not held yet
-constexpr float kTurnTime = 0.25f;                   ///< in which a heading is corrected [s]
-constexpr float kTurnResponse = 0.1f;                ///< of the rate of the turn [s]
-constexpr float kTurnSpeed = 0.3f;                   ///< share of the speed that is left in a turn
+constexpr int kMaxEnds = 4;                 ///< of clips, in one step
+constexpr float kLastPhase = 1.0f - 1e-6f;  ///< still moving: the pose is not held yet
+constexpr float kTurnTime = 0.25f;          ///< in which a heading is corrected [s]
+constexpr float kTurnResponse = 0.1f;       ///< of the rate of the turn [s]
+constexpr float kTurnSpeed = 0.3f;          ///< share of the speed that is left in a turn
 
 template <typename T>
 const T* asset_at(const std::vector<T>& assets, std::uint32_t index) {
@@ -34,26 +33,6 @@ bool is_fulfilled(const MotionContext& context, const GraphTransition& transitio
     }
     const float value = parameter_of(context.parameters, transition.parameter);
     return value > transition.above && value < transition.below;
-}
-
-/// Empties the list and frees its memory: most characters are not in a transition.
-template <typename T>
-void free_list(std::vector<T>& list) {
-    list = std::vector<T>();
-}
-
-void end_transition(MotionGraphState& state) {
-    state.transition = kNoGraphState;
-    state.source = GraphPlayback{};
-    state.clock = 0.0f;
-    free_list(state.turns);
-    free_list(state.shifted);
-    free_list(state.shifts);
-    free_list(state.morphs);
-    free_list(state.frozen_translations);
-    free_list(state.frozen_rotations);
-    free_list(state.frozen_scales);
-    free_list(state.frozen_weights);
 }
 
 bool is_looping(const MotionContext& context, std::uint32_t state) {
@@ -74,41 +53,6 @@ float start_phase(
     const ClipCycle& cycle = plan.cycles[heaviest(state_weights(context, target))];
     const float time = transition.start == StartPhase::Time ? transition.time : 0.0f;
     return phase_at(cycle, cycle.duration > 0.0f ? time / cycle.duration : 0.0f, loop);
-}
-
-/// Offsets of the displayed pose from that of `next`.
-void capture_offsets(
-    const MotionContext& context, const GraphPlayback& next, MotionGraphState& state) {
-    thread_local MotionPose shown;
-    thread_local MotionPose shown_earlier;
-    thread_local MotionPose target;
-    thread_local MotionPose target_earlier;
-    evaluate_states(context, state, 0.0f, shown);
-    evaluate_states(context, state, kVelocityInterval, shown_earlier);
-    evaluate_state(context, next, target);
-    evaluate_state_earlier(context, next, kVelocityInterval, target_earlier);
-    end_transition(state);
-    const std::size_t joints = shown.joints.size();
-    state.turns.resize(joints);
-    for (std::uint16_t j = 0; j < joints; ++j) {
-        state.turns[j] = inertial_turn(
-            shown.joints.rotations[j], shown_earlier.joints.rotations[j],
-            target.joints.rotations[j], target_earlier.joints.rotations[j], kVelocityInterval);
-        const InertialOffset shift = inertial_shift(
-            shown.joints.translations[j], shown_earlier.joints.translations[j],
-            target.joints.translations[j], target_earlier.joints.translations[j],
-            kVelocityInterval);
-        if (!is_negligible(shift)) {
-            state.shifted.push_back(j);
-            state.shifts.push_back(shift);
-        }
-    }
-    for (std::size_t i = 0; i < shown.weights.size(); ++i) {
-        state.morphs.push_back(inertial_shift(
-            Vec3(shown.weights[i], 0, 0), Vec3(shown_earlier.weights[i], 0, 0),
-            Vec3(target.weights[i], 0, 0), Vec3(target_earlier.weights[i], 0, 0),
-            kVelocityInterval));
-    }
 }
 
 /// Makes the current state, or the pose of a transition that is not over, the source of a
@@ -140,7 +84,7 @@ bool begin_transition(const MotionContext& context, std::uint32_t index, MotionG
     if (is_cut) {
         end_transition(state);
     } else if (transition.blend == TransitionBlend::Inertialize) {
-        capture_offsets(context, next, state);
+        capture_offsets(context, context, next, state);
     } else {
         capture_source(context, state);
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kSmoothRows = 10;  // to each side, of a root that follows hips
 constexpr int kSmoothPasses = 2;
-constexpr float kLeastSpread = 1e-4f;  // of a feature that is always the same
+constexpr float kMinSpread = 1e-4f;  // of a feature that is always the same
 
 const ClipData* asset_clip(const Assets& assets, ClipId id) {
     return id.index < assets.clips.size() ? &assets.clips[id.index] : nullptr;
@@ -124,7 +124,7 @@ void measure_spread(
         const float weight = std::max(finite_or(weight_of(weights, part), 1.0f), 0.0f);
         for (std::size_t k = first; k < first + size; ++k) {
             database.mean[k] = static_cast<float>(mean[k]);
-            database.scale[k] = weight / std::max(spread, kLeastSpread);
+            database.scale[k] = weight / std::max(spread, kMinSpread);
         }
     }
 }
