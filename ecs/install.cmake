@@ -34,6 +34,7 @@ install(
     FILES_MATCHING
     PATTERN *.h
     PATTERN components EXCLUDE
+    PATTERN base/air.h EXCLUDE
     PATTERN base/bezier.h EXCLUDE
     PATTERN base/gradient_noise.h EXCLUDE
     PATTERN base/math.h EXCLUDE

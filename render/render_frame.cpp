@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/curvature_view.h"
+#include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
@@ -115,6 +116,7 @@ struct Accumulation {
     gpu::Texture sum;
     bool empty = true;
     SampleKind kind = SampleKind::Played;
+    SampleMean mean = SampleMean::Light;
     std::vector<std::pair<std::string, gpu::Texture>> aovs;  ///< by name
 };
 
@@ -181,8 +183,12 @@ class Renderer {
     void prepare_views();
     ViewSlot& view_slot(std::size_t index);
     void draw_views();
-    /// Adds the image to the sum of samples, or starts from that sum.
-    void add_to_sum(const ViewData& view, float weight);
+    void add_to_sum(const World& world, const ViewData& view, float weight);
+    /// The mean of the samples that were added.
+    TextureId mean_radiance(const World& world);
+    /// Exposure by which samples are compressed; 0: they are not.
+    [[nodiscard]] float compression(const World& world) const;
+    const gpu::Program* accumulation_program();
 
     RenderSettings settings_;
     std::vector<EffectSlot> effects_;
@@ -394,7 +400,7 @@ void Renderer::draw_views() {
         ViewSlot& slot = *views_[i + 1 == view_count_ ? 0 : i + 1];
         graph.begin_scope(slot.name);
         if (slot.data.is(kMeanView)) {
-            slot.data.radiance = graph.import("accumulation", accumulation.sum);
+            slot.data.radiance = mean_radiance(*frame_.world);
         }
         for (std::size_t e = 0; e < effects_.size(); ++e) {
             if (slot.takes_part[e] != 0 && effects_[e].entry->draw != nullptr) {
@@ -437,7 +443,7 @@ FrameOutput Renderer::draw(
 
     const ViewData& view = views_[0]->data;
     if (weight > 0) {
-        add_to_sum(view, weight);
+        add_to_sum(world, view, weight);
     }
     if (view.display.valid()) {
         graph.keep(view.radiance);
@@ -463,20 +469,54 @@ FrameOutput Renderer::draw(
     return out;
 }
 
-void Renderer::add_to_sum(const ViewData& view, float weight) {
+float Renderer::compression(const World& world) const {
+    if (accumulation.mean == SampleMean::Light) {
+        return 0;
+    }
+    const auto* const found = world.find_resource<Exposure>();
+    const Exposure exposure = found != nullptr ? *found : Exposure{};
+    return std::exp2(exposure.ev + exposure.manual_ev);
+}
+
+TextureId Renderer::mean_radiance(const World& world) {
+    const TextureId sum = graph.import("accumulation", accumulation.sum);
+    const float factor = compression(world);
+    if (factor == 0) {
+        return sum;
+    }
+    const TextureId mean = create_target(
+        graph, "expanded mean", GL_RGBA32F, {accumulation.sum.width(), accumulation.sum.height()});
+    add_fullscreen_pass(
+        graph, "expand mean", {sampled(sum, layout::kSourceUnit)}, {discarded(mean)},
+        accumulation_program(), [factor](PassContext&, const gpu::Program& program) {
+            program.set("weight", 1.0f);
+            program.set("compression", -factor);
+        });
+    return mean;
+}
+
+const gpu::Program* Renderer::accumulation_program() {
     if (add_ == nullptr) {
         const Result<const gpu::Program*> program =
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
         LIMN_CHECK_NOTE(program.ok(), "accumulate.frag does not compile");
         add_ = *program;
     }
+    return add_;
+}
+
+void Renderer::add_to_sum(const World& world, const ViewData& view, float weight) {
     const TextureId target = graph.import("accumulation", accumulation.sum);
+    const float factor = compression(world);
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendAdd;
     add_fullscreen_pass(
         graph, "accumulate", {sampled(view.radiance, layout::kSourceUnit)},
-        {accumulation.empty ? cleared(target) : Use(target)}, add_, state,
-        [weight](PassContext&, const gpu::Program& program) { program.set("weight", weight); });
+        {accumulation.empty ? cleared(target) : Use(target)}, accumulation_program(), state,
+        [weight, factor](PassContext&, const gpu::Program& program) {
+            program.set("weight", weight);
+            program.set("compression", factor);
+        });
     accumulation.empty = false;
 }
 
@@ -509,7 +549,7 @@ int warm_up(
     return renderer.warm_up(world, view, progress);
 }
 
-void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind) {
+void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind, SampleMean mean) {
     Accumulation& into = renderer.accumulation;
     if (!into.sum || into.sum.width() != size.x || into.sum.height() != size.y) {
         into.sum =
@@ -517,6 +557,7 @@ void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind) 
     }
     into.empty = true;
     into.kind = kind;
+    into.mean = mean;
     into.aovs.clear();
 }
 
@@ -541,12 +582,12 @@ FrameOutput finish_accumulation(Renderer& renderer, const World& world, const Re
 
 FrameOutput render_accumulated(
     Renderer& renderer, const World& world, const RenderView& view, int samples,
-    const FrameRequest& request) {
+    const FrameRequest& request, SampleMean mean) {
     LIMN_CHECK(samples >= 1);
     if (samples == 1) {
         return render_frame(renderer, world, with_jitter(view, {0, 0}), request);
     }
-    begin_accumulation(renderer, {view.width, view.height}, SampleKind::Played);
+    begin_accumulation(renderer, {view.width, view.height}, SampleKind::Played, mean);
     for (int i = 0; i < samples; ++i) {
         accumulate(
             renderer, world, with_jitter(view, sample_jitter(i, samples)),

@@ -63,6 +63,15 @@ struct FrameRequest {
     std::vector<std::string> aovs;  ///< of aov_names(); unknown ones are left out
 };
 
+/// What the mean of samples is taken of.
+enum class SampleMean : std::uint8_t {
+    Light,  ///< radiance, as a camera's pixel collects it: the truth, and what an EXR stores
+    /// What the display shows of it: edges of what is brighter than white are smooth. Samples are
+    /// compressed by c / (1 + exposure * largest channel), and their mean is expanded again
+    /// (Karis, "High Quality Temporal Supersampling", 2014).
+    Displayed,
+};
+
 /// Statistics of the main view.
 struct FrameStatistics {
     int instances = 0;           ///< with mesh, material and transform
@@ -135,7 +144,7 @@ int warm_up(
 /// image of render_frame.
 FrameOutput render_accumulated(
     Renderer& renderer, const World& world, const RenderView& view, int samples,
-    const FrameRequest& request = {});
+    const FrameRequest& request = {}, SampleMean mean = SampleMean::Light);
 
 // An image that is the mean of others, at times and positions that the caller chooses; between
 // samples the world may advance:
@@ -147,7 +156,8 @@ FrameOutput render_accumulated(
 // Glow and glare, which are linear, are applied to the mean; motion blur that keeps a history of
 // frames is left out of samples.
 
-void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind);
+void begin_accumulation(
+    Renderer& renderer, const IVec2& size, SampleKind kind, SampleMean mean = SampleMean::Light);
 /// Adds `weight` times the radiance of `view`, which must have the size that was begun with.
 void accumulate(Renderer& renderer, const World& world, const RenderView& view, float weight);
 /// Keeps the requested AOVs of this view, sampled at pixel centers, for the output.

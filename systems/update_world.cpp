@@ -42,6 +42,7 @@
 #include "systems/fly_camera_system.h"
 #include "systems/lens_control_system.h"
 #include "systems/light/light_map_system.h"
+#include "systems/light/sunlight_system.h"
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
@@ -99,7 +100,8 @@ void add_object_systems(SystemList& systems) {
     systems.add<update_transforms>(Place, Both);
     systems.add<keep_input>(View);
     systems.add<update_env_probes>(Follow, Both);  // captures from the current position
-    systems.add<update_light_maps>(Follow, Both);  // after everything that moves lights
+    systems.add<update_sunlight>(Follow, Both);    // after everything that moves lights
+    systems.add<update_light_maps>(Follow, Both);  // likewise
 }
 
 void add_animation_systems(SystemList& systems) {

@@ -109,7 +109,7 @@ std::vector<dvec3> tone_map_exactly(
             color = oracle::pbr_neutral(color);
             break;
         case ToneCurve::Aces:
-            color = oracle::aces_fit(color);
+            color = oracle::aces_fit(1.4619 * color);  // 18 % gray stays 18 %
             break;
         case ToneCurve::Linear:
             break;

@@ -226,6 +226,7 @@ void register_all_components() {
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();
+    register_component<Sunlight>();
     register_component<LightPulse>();
     register_component<Shadow>();
     register_component<NoShadow>();

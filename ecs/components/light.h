@@ -95,6 +95,22 @@ LIMN_FIELDS(DirectionalLight) {
     LIMN_FIELD(enabled, "whether the light is on");
 }
 
+/// On a directional light: the sun, or the moon, above the air. The color and the illuminance of
+/// the light are what the air of the sky `atmosphere` lets through from its direction
+/// (update_sunlight), and that sky scatters the rest.
+struct Sunlight {
+    Vec3 color = {1, 1, 1};
+    float illuminance = 6.67f;
+};
+
+LIMN_FIELDS(Sunlight) {
+    LIMN_FIELD(color, .doc = "above the air, linear Rec. 709", .min = 0, .color = true);
+    LIMN_FIELD(
+        illuminance,
+        "above the air, perpendicular to the light; the default is the sun's in units of 20 klx",
+        "lx", 0, 1e6);
+}
+
 /// Modulates the light on the same entity (the `function` of engine.light-object): its intensity is
 /// multiplied by a periodic function, never below 0, its color led to another one and back.
 struct LightPulse {

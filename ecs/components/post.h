@@ -67,8 +67,10 @@ LIMN_FIELDS(Exposure) {
     LIMN_FIELD(key, "log-average luminance after metering", "", 1e-3, 10);
     LIMN_FIELD(adaptation, "time constant of eye adaptation with auto; 0 = immediate", "s", 0, 60);
     LIMN_FIELD(
-        min_luminance, .doc = "smallest average luminance used by metering", .min = 1e-6,
-        .max = 65504, .renamed = "darkest");
+        min_luminance,
+        .doc = "smallest average luminance used by metering; the default keeps night dark, 1e-7 "
+               "is below a full moon's light where the sun has 5 lx",
+        .min = 1e-8, .max = 65504, .renamed = "darkest");
     LIMN_FIELD(
         max_luminance, .doc = "largest average luminance used by metering", .min = 1e-6,
         .max = 65504, .renamed = "brightest");

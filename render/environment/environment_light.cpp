@@ -155,6 +155,10 @@ layout::EnvironmentBlock make_environment_block(
     block.ground = Vec4(environment.ground * intensity, 0);
     block.sun_direction = Vec4(sun_direction, 0);
     block.sun_color = Vec4(sun_color, 0);
+    if (environment.sky == SkyKind::Atmosphere) {
+        block.zenith = Vec4(Vec3(0), block.zenith.w);
+        block.ground = Vec4(0);
+    }
     for (std::size_t i = 0; i < layout::kStudioLamps; ++i) {
         const LampSpec& lamp = kLamps[i];
         const Vec3 center = glm::normalize(lamp.center);
@@ -169,7 +173,8 @@ layout::EnvironmentBlock make_environment_block(
     return block;
 }
 
-Vec3 sky_radiance(const layout::EnvironmentBlock& block, const Vec3& direction) {
+Vec3 sky_radiance(
+    const layout::EnvironmentBlock& block, const Vec3& direction, const SkyView* view) {
     switch (static_cast<SkyKind>(static_cast<int>(block.zenith.w))) {
     case SkyKind::Gradient:
         return gradient_sky(block, direction);
@@ -177,13 +182,15 @@ Vec3 sky_radiance(const layout::EnvironmentBlock& block, const Vec3& direction) 
         return studio(block, direction);
     case SkyKind::Panorama:
         return Vec3(0);
+    case SkyKind::Atmosphere:
+        return view != nullptr ? rgb(block.zenith) * sky_radiance(*view, direction) : Vec3(0);
     case SkyKind::Uniform:
         break;
     }
     return rgb(block.zenith);
 }
 
-layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block) {
+layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block, const SkyView* view) {
     // Equal areas: rings of equal height, divided evenly.
     constexpr int kRings = 96;
     constexpr int kSectors = 192;
@@ -194,7 +201,7 @@ layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block) {
         for (int j = 0; j < kSectors; ++j) {
             const float phi = 2 * kPi * (static_cast<float>(j) + 0.5f) / kSectors;
             const Vec3 d = {across * std::cos(phi), y, across * std::sin(phi)};
-            const glm::dvec3 radiance = sky_radiance(block, d);
+            const glm::dvec3 radiance = sky_radiance(block, d, view);
             const std::array<float, 9> h = harmonics(d);
             for (int k = 0; k < 9; ++k) {
                 sums[k] += radiance * static_cast<double>(h[k]);

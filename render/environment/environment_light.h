@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/environment.h"
+#include "render/environment/atmosphere.h"
 #include "render/shaders/environment_gpu.h"
 
 #include <vector>
@@ -20,11 +21,13 @@ namespace limn {
     const Environment& environment, const Vec3& sun_direction, const Vec3& sun_color);
 
 /// Radiance of the sky from `direction` (unit), without the sun. Zero for a Panorama, which only
-/// the GPU has.
-[[nodiscard]] Vec3 sky_radiance(const layout::EnvironmentBlock& block, const Vec3& direction);
+/// the GPU has. `view`: of an Atmosphere, black without it.
+[[nodiscard]] Vec3 sky_radiance(
+    const layout::EnvironmentBlock& block, const Vec3& direction, const SkyView* view = nullptr);
 
 /// SH irradiance of the sky function; irradiance.comp does the same for cube maps.
-[[nodiscard]] layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block);
+[[nodiscard]] layout::Irradiance
+project_irradiance(const layout::EnvironmentBlock& block, const SkyView* view = nullptr);
 
 /// Irradiance / pi on a plane with the unit normal `normal`.
 [[nodiscard]] Vec3 irradiance_toward(const layout::Irradiance& irradiance, const Vec3& normal);

@@ -30,24 +30,25 @@ constexpr int kMaxMapSamples = 256;  ///< maximum per texel; level 0 is sharp an
 constexpr int kIrradianceFace =
     32;  ///< [px] of the cube map level that irradiance is integrated from
 
-/// All levels of one layer; `cube` is null for an analytic sky.
+/// All levels of one layer; `source`: a cube map or the table of an atmosphere, null for a sky that
+/// is a function.
 void draw_levels(
     FrameGraph& graph, const ReflectionPass& pass, const gpu::RingSlice& block,
-    const gpu::Program& program, const gpu::Texture* cube, int layer, int samples) {
+    const gpu::Program& program, const gpu::Texture* source, int layer, int samples) {
     const TextureId maps = graph.import("reflection map", pass.maps);
     std::vector<Use> reads;
-    if (cube != nullptr) {
-        reads.emplace_back(graph.import("cube levels", *cube));
+    if (source != nullptr) {
+        reads.emplace_back(graph.import("sky", *source));
     }
     for (int level = 0; level < pass.maps.desc().levels; ++level) {
         graph.add_pass(
             "reflection map", reads, std::array{target_level(discarded(maps), level, layer)},
-            [&pass, block, &program, cube, level, samples](PassContext& context) {
+            [&pass, block, &program, source, level, samples](PassContext& context) {
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
                 context.device().bind_uniforms(
                     layout::kEnvironmentBinding, block.buffer, block.offset, block.size);
-                if (cube != nullptr) {
-                    context.device().bind_texture(layout::kSkyCubeUnit, *cube);
+                if (source != nullptr) {
+                    context.device().bind_texture(layout::kSkyCubeUnit, *source);
                 }
                 const int levels = pass.maps.desc().levels;
                 program.set(
@@ -150,14 +151,15 @@ void draw_sky_reflection(
     const SkyKind sky = environment.settings.sky;
     if (sky == SkyKind::Panorama) {
         draw_cube_reflection(
-            graph, pass, environment.block_slice, *environment.cube, 0, kMaxMapSamples);
+            graph, pass, environment.block_slice, *environment.sky, 0, kMaxMapSamples);
         return;
     }
-    const layout::Irradiance irradiance = project_irradiance(environment.block);
+    const layout::Irradiance irradiance =
+        project_irradiance(environment.block, environment.sky_view);
     pass.irradiance.write(0, std::span(&irradiance, 1));
     draw_levels(
-        graph, pass, environment.block_slice, *pass.programs[static_cast<int>(sky)], nullptr, 0,
-        kMaxMapSamples);
+        graph, pass, environment.block_slice, *pass.programs[static_cast<int>(sky)],
+        environment.sky, 0, kMaxMapSamples);
 }
 
 void draw_cube_reflection(

@@ -60,12 +60,13 @@ struct SceneEnvironment {
     Environment settings;
     layout::EnvironmentBlock block{};
     gpu::RingSlice block_slice;            ///< the same, uploaded
-    const gpu::Texture* cube = nullptr;    ///< of a Panorama
+    const gpu::Texture* sky = nullptr;     ///< cube of a Panorama, table of an Atmosphere
+    const SkyView* sky_view = nullptr;     ///< of an Atmosphere
     ReflectionPass* reflection = nullptr;  ///< whose layers probes fill, too
     bool changed = false;                  ///< since the previous frame: probes are out of date
 };
 
-/// Fills layer 0 from the scene's sky: its function or, for a Panorama, its cube map.
+/// Fills layer 0 from the scene's sky: its function, its table or, for a Panorama, its cube map.
 void draw_sky_reflection(
     FrameGraph& graph, ReflectionPass& pass, const SceneEnvironment& environment);
 

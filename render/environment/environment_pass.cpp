@@ -1,5 +1,7 @@
 #include "render/environment/environment_pass.h"
 
+#include "ecs/components/light.h"
+#include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/environment/sheen_albedo.h"
 #include "render/gpu/device.h"
@@ -9,6 +11,8 @@
 #include "render/render_frame.h"
 #include "render/shaders/environment_gpu.h"
 #include "render/shaders/material_layers_gpu.h"
+
+#include <glm/geometric.hpp>
 
 namespace limn {
 namespace {
@@ -34,7 +38,22 @@ Environment displayed_environment(const FrameData& frame) {
 bool same_light(const Environment& a, const Environment& b) {
     return a.sky == b.sky && a.zenith == b.zenith && a.horizon == b.horizon && a.ground == b.ground
            && a.intensity == b.intensity && a.panorama == b.panorama && a.mapping == b.mapping
-           && a.rotation == b.rotation && a.half_angle == b.half_angle;
+           && a.rotation == b.rotation && a.half_angle == b.half_angle && a.haze == b.haze;
+}
+
+/// The sun above the air: direction and irradiance, black without one.
+std::array<Vec3, 2> sun_above_air(const World& world) {
+    std::array<Vec3, 2> sun = {Vec3(0, 1, 0), Vec3(0)};
+    bool found = false;
+    world.query<const Sunlight, const DirectionalLight, const WorldTransform>().each(
+        [&](const Sunlight& above, const DirectionalLight& light, const WorldTransform& at) {
+            const Vec3 toward = transform_vector(at.world, {0, 0, 1});
+            if (!found && light.enabled && glm::length(toward) > 0) {
+                sun = {glm::normalize(toward), above.color * above.illuminance};
+                found = true;
+            }
+        });
+    return sun;
 }
 
 void bind_environment(PassContext& context, const SceneEnvironment& environment) {
@@ -76,19 +95,55 @@ void EnvironmentEffect::collect(FrameData& frame) {
     if (frame.assets_replaced) {
         current.reset();  // the panorama may be another image
     }
-    published.changed = !current || !same_light(*current, published.settings);
+    const auto& lights = frame.data.get<LightList>();
+    const SkyKind sky = published.settings.sky;
+    const std::array<Vec3, 2> sun = sky == SkyKind::Atmosphere
+                                        ? sun_above_air(*frame.world)
+                                        : std::array{lights.sun_direction, Vec3(0)};
+    published.changed = !current || !same_light(*current, published.settings)
+                        || (sky == SkyKind::Atmosphere && sun != current_sun);
     if (published.changed) {
         block = make_environment_block(published.settings, Vec3(0, 1, 0), Vec3(0));
         describe_reflection(reflection, block);
+        if (sky == SkyKind::Atmosphere) {
+            update_atmosphere(published.settings, sun);
+        }
         current = published.settings;
+        current_sun = sun;
     }
-    const auto& lights = frame.data.get<LightList>();
-    block.sun_direction = Vec4(lights.sun_direction, 0);
+    block.sun_direction = Vec4(sun[0], 0);
     block.sun_color = Vec4(lights.sun_color, 0);
     published.block = block;
     published.block_slice = frame.ring->push_value(block);
-    published.cube = &panorama.cube;
+    if (sky == SkyKind::Panorama) {
+        published.sky = &panorama.cube;
+    } else if (sky == SkyKind::Atmosphere) {
+        published.sky = &sky_table;
+        published.sky_view = &sky_view;
+    }
     published.reflection = &reflection;
+}
+
+void EnvironmentEffect::update_atmosphere(
+    const Environment& environment, const std::array<Vec3, 2>& sun) {
+    const AirSettings settings = {environment.haze, environment.ground};
+    if (!air || !(air->settings == settings)) {
+        air = make_air_tables(settings);
+        sky_view.radiance.clear();
+    }
+    if (sky_view.radiance.empty() || sky_view.sun != sun[0]) {
+        sky_view = make_sky_view(*air, sun[0]);
+        if (!sky_table) {
+            sky_table = gpu::Texture(
+                "sky table",
+                {.format = GL_RGBA16F, .width = SkyView::kWidth, .height = SkyView::kHeight});
+            sky_table.set_filter(GL_LINEAR, GL_LINEAR);
+        }
+        sky_table.upload<Vec4>(sky_view.radiance, GL_RGBA, GL_FLOAT);
+    }
+    const Vec3 irradiance = environment.intensity * sun[1];
+    block.zenith = Vec4(irradiance, block.zenith.w);
+    block.ground = Vec4(irradiance * sky_view.ground, 0);
 }
 
 void EnvironmentEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {

@@ -29,10 +29,9 @@ void SkyEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) 
     if (!environment.settings.visible && !for_light) {
         return;
     }
-    const bool panorama = environment.settings.sky == SkyKind::Panorama;
     std::vector<Use> reads = {depth_tested(view.gbuffer.depth)};
-    if (panorama) {
-        reads.push_back(sampled(graph.import("sky cube", *environment.cube), layout::kSkyCubeUnit));
+    if (environment.sky != nullptr) {
+        reads.push_back(sampled(graph.import("sky map", *environment.sky), layout::kSkyCubeUnit));
     }
     const Use writes[] = {view.radiance};
     graph.add_pass(

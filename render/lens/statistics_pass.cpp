@@ -58,27 +58,30 @@ BufferId measure_image(
     if (request.depth.valid()) {
         reads.push_back(sampled(request.depth, layout::kStatisticsDepthUnit));
     }
+    const float log_delta = std::min(layout::kLogDelta, request.adaptation_range.x);
     const std::array<Use, 2> writes = {parts, histogram};
     graph.add_pass(
         "statistics", std::span(reads), std::span(writes),
-        [sum, parts, histogram, groups](PassContext& context) {
+        [sum, parts, histogram, groups, log_delta](PassContext& context) {
             if (sum == nullptr) {
                 return;
             }
             context.device().use(*sum);
+            sum->set("log_delta", log_delta);
             context.bind_storage(layout::kStatisticsPartsBinding, parts);
             context.bind_storage(layout::kHistogramBinding, histogram);
             context.device().dispatch(groups.x, groups.y);
         });
     graph.add_pass(
         "statistics, joined", {parts}, {histogram, measure},
-        [join, request, parts, histogram, measure, count](PassContext& context) {
+        [join, request, parts, histogram, measure, count, log_delta](PassContext& context) {
             if (join == nullptr) {
                 return;
             }
             const gpu::Program& program = *join;
             context.device().use(program);
             program.set("part_count", count);
+            program.set("log_delta", log_delta);
             program.set("key", request.key);
             program.set("adaptation_blend", request.blend);
             program.set("adaptation_range", request.adaptation_range);

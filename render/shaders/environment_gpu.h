@@ -19,7 +19,7 @@ struct StudioLamp {
 };
 
 struct EnvironmentBlock {
-    vec4 zenith;         // radiance, times the intensity. w: SkyKind
+    vec4 zenith;         // radiance, times the intensity; atmosphere: the sun's irradiance above the air. w: SkyKind
     vec4 horizon;        // w: intensity
     vec4 ground;
     vec4 sun_direction;  // unit, toward the first directional light

@@ -18,6 +18,7 @@ layout(std430, binding = kStatisticsBinding) buffer Measure {
 };
 
 uniform int part_count;
+uniform float log_delta;         // the average of black
 uniform float key;               // log-average after metering; 0: no metering
 uniform float adaptation_blend;  // adaptation step toward this frame's luminance, 0 .. 1
 uniform vec2 adaptation_range;   // luminance range of adaptation
@@ -76,7 +77,7 @@ void main() {
     StatisticsPart all = joined[0];
     float count = max(float(all.finite), 1.0);
     // Without any finite pixel the image counts as black.
-    float average = all.finite > 0u ? exp2(all.sum.w / count) : kLogDelta;
+    float average = all.finite > 0u ? exp2(all.sum.w / count) : log_delta;
     float least = all.largest > 0.0 ? all.least : 0.0;
     bool adapted_before = measure.pixels.w != 0u;
     float adapted = measure.luminance.y;

@@ -14,6 +14,7 @@ layout(binding = kSourceUnit) uniform sampler2D image;
 #ifdef SURFACES
 layout(binding = kStatisticsDepthUnit) uniform sampler2D depth;
 #endif
+uniform float log_delta;  // keeps the logarithm of black finite
 layout(std430, binding = kStatisticsPartsBinding) writeonly buffer Parts {
     StatisticsPart parts[];
 };
@@ -48,7 +49,7 @@ void main() {
 #else
             const uint weight = 1u;
 #endif
-            part.sum += float(weight) * vec4(light, log2(kLogDelta + l));
+            part.sum += float(weight) * vec4(light, log2(log_delta + l));
             part.largest = max(part.largest, l);
             part.least = l > 0.0 ? min(part.least, l) : part.least;
             part.finite += weight;

@@ -29,7 +29,7 @@ struct BlurWeights {
     vec4 weight[16];
 };
 
-const float kLogDelta = 1e-4f;       // keeps the logarithm of black finite
+const float kLogDelta = 1e-4f;       // keeps the logarithm of black finite; less where metering goes lower
 const float kNoLuminance = 1e9;      // more than any luminance
 const float kMaxHalf = 65504.0;    // the largest half; brighter light is clamped to it
 const int kHistogramBins = 1024;     // of log2 luminance, from the smallest half to 2^16

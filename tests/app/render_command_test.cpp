@@ -157,6 +157,28 @@ TEST_CASE("render_command: --set and --time change the image") {
     CHECK(test::read_text(folder.file("later.png")) != test::read_text(folder.file("a.png")));
 }
 
+TEST_CASE("render_command: --average chooses the mean; EXR and --spp have that of the light") {
+    const TemporaryFolder folder;
+    const auto file = [&](const char* name, const Words& more) {
+        Words words = {"render", "lights", "--size", "64x36", "--set", "exposure.ev=5", "-o", name};
+        words.insert(words.end(), more.begin(), more.end());
+        check_ok(run_limn(folder, words));
+        return test::read_text(folder.file(name));
+    };
+    const std::string usual = file("usual.png", {});
+    CHECK(file("displayed.png", {"--average", "displayed"}) == usual);
+    CHECK(file("light.png", {"--average", "light"}) != usual);
+    const std::string light = file("light.exr", {"--average", "light"});
+    CHECK(file("light.exr", {}) == light);
+    CHECK(file("light.exr", {"--average", "displayed"}) != light);
+    const std::string sampled = file("sampled.png", {"--spp", "4"});
+    CHECK(file("sampled.png", {"--spp", "4", "--average", "light"}) == sampled);
+    const ProgramRun wrong =
+        run_limn(folder, {"render", "lights", "-o", "x.png", "--average", "median"});
+    CHECK(wrong.exit_code == 2);
+    CHECK(wrong.err.find("found \"median\", expected light or displayed") != std::string::npos);
+}
+
 TEST_CASE("render_command: --show renders a technique at its time, and --off without it") {
     const TemporaryFolder folder;
     const std::vector<std::string> show = {"render", "--show", "anim.euler",

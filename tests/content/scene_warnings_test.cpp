@@ -177,6 +177,24 @@ TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
         == Warnings{"entity \"hall\": env_probe.resolution 100 is rounded to the power of two 64"});
 }
 
+TEST_CASE("scene warnings: an atmosphere without a sun, and a sun that lights nothing") {
+    const auto with = [](const char* sun) {
+        return warnings_of(fmt::format(
+            R"({{"resources": {{"environment": {{"sky": "atmosphere"}}}},
+                "entities": [{{"name": "sun", "transform": {{"rotation": [0, -40, 0]}}{}}}]}})",
+            sun));
+    };
+    CHECK(
+        with(R"(, "directional_light": {})")
+        == Warnings{"environment: the sky \"atmosphere\" is black without a sunlight"});
+    CHECK(
+        with(R"(, "sunlight": {})")
+        == Warnings{
+            "entity \"sun\": sunlight has no effect without directional_light",
+            "environment: the sky \"atmosphere\" is black without a sunlight"});
+    CHECK(with(R"(, "sunlight": {}, "directional_light": {})").empty());
+}
+
 TEST_CASE("scene warnings: events on a component that the entity lacks") {
     const auto with = [](const char* components, const char* action) {
         return fmt::format(

@@ -127,6 +127,29 @@ TEST_CASE_FIXTURE(Scene, "render frame: accumulated samples smooth an edge to it
 }
 
 TEST_CASE_FIXTURE(
+    Scene, "render frame: a mean of what is displayed keeps the edges of lamps smooth") {
+    const Material lamp = {
+        .shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}, .emission = Vec3(49)};
+    place(add(make_square()), add(lamp), at({-1 + (19.5f / 16 - 1), 0, 0}));
+    world.insert_resource(Exposure{.ev = 1});
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
+    const auto mean = [&](SampleMean of) {
+        return gpu::read_floats(
+            *render_accumulated(shared_renderer(), world, view, 64, {}, of).radiance);
+    };
+    const gpu::FloatImage light = mean(SampleMean::Light);
+    const gpu::FloatImage displayed = mean(SampleMean::Displayed);
+    const float inside = light.at(18, 16, 0);
+    const float covered = light.at(19, 16, 0) / inside;
+    CHECK(covered == test::near(0.5).epsilon(0.06));
+    CHECK(displayed.at(18, 16, 0) == test::near(inside).epsilon(1e-3));
+    CHECK(displayed.at(20, 16, 0) == 0);
+    // c / (1 + 2 c) is averaged.
+    const float compressed = covered * inside / (1 + 2 * inside);
+    CHECK(displayed.at(19, 16, 0) == test::near(compressed / (1 - 2 * compressed)).epsilon(1e-3));
+}
+
+TEST_CASE_FIXTURE(
     Scene, "render frame: the same world twice is the same image, bit for bit"
                * technique("engine.draw-frame, engine.main-loop")) {
     world.insert_resource(Environment{.sky = SkyKind::Studio});

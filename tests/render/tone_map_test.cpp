@@ -74,9 +74,16 @@ TEST_CASE_FIXTURE(ToneScene, "tone map: both curves have the published values") 
         const Vec3 a = shown(color, {.curve = ToneCurve::Aces});
         for (int c = 0; c < 3; ++c) {
             CHECK(std::abs(n[c] - 255 * srgb_encode(oracle::pbr_neutral(color)[c])) <= 0.7);
-            CHECK(std::abs(a[c] - 255 * srgb_encode(oracle::aces_fit(color)[c])) <= 0.7);
+            const double aces = oracle::aces_fit(1.4619 * glm::dvec3(color))[c];
+            CHECK(std::abs(a[c] - 255 * srgb_encode(aces)) <= 0.7);
         }
     }
+    // ACES is exposed so that 18 % gray stays 18 %, and white is 73 %.
+    CHECK(oracle::aces_fit(glm::dvec3(1.4619 * 0.18)).y == test::near(0.18).epsilon(1e-4));
+    CHECK(
+        std::abs(shown(Vec3(0.18f), {.curve = ToneCurve::Aces}).y - 255 * srgb_encode(0.18))
+        <= 0.3);
+    CHECK(std::abs(shown(Vec3(1), {.curve = ToneCurve::Aces}).y - 255 * srgb_encode(0.731)) <= 0.4);
     // Neutral leaves base colors alone but for 0.04 of haze.
     CHECK(
         shown({0.5f, 0.4f, 0.3f}, {.curve = ToneCurve::Neutral}).x
@@ -296,6 +303,16 @@ TEST_CASE_FIXTURE(
     // Nobody adapts while exposure is manual: coming back is a cut, too.
     static_cast<void>(shown(Vec3(1), {}));
     CHECK(std::abs(shown_light(Vec3(0.1f), eye) - 0.18f) <= 0.51f / 255);
+}
+
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: moonlight is metered where min_luminance allows, and else stays dark"
+                   * technique("hdr.key-scale")) {
+    // The ground under a full moon, where the sun has 5 lx.
+    const float moonlit = 7e-7f;
+    const Exposure eye = {.metering = Metering::Auto, .adaptation = 0, .min_luminance = 1e-8f};
+    CHECK(std::abs(shown_light(Vec3(moonlit), eye) - 0.18f) <= 0.02f * 0.18f + 0.51f / 255);
+    CHECK(shown_light(Vec3(moonlit), {.metering = Metering::Auto}) < 0.01f);
 }
 
 TEST_CASE_FIXTURE(

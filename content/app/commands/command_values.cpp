@@ -96,6 +96,16 @@ Result<gpu::Profile> parse_profile(std::string_view text) {
     return fail("found \"{}\", expected gpu or software", text);
 }
 
+Result<SampleMean> parse_average(std::string_view text) {
+    if (text == "light") {
+        return SampleMean::Light;
+    }
+    if (text == "displayed") {
+        return SampleMean::Displayed;
+    }
+    return fail("found \"{}\", expected light or displayed", text);
+}
+
 std::string one_line(std::string text) {
     text = printable_lines(std::move(text));
     std::replace(text.begin(), text.end(), '\n', ' ');

@@ -3,6 +3,7 @@
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "render/gpu/device_caps.h"
+#include "render/render_frame.h"
 
 #include <cstdint>
 #include <string>
@@ -53,6 +54,9 @@ parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 
 /// "gpu" or "software".
 [[nodiscard]] Result<gpu::Profile> parse_profile(std::string_view text);
+
+/// "light" or "displayed".
+[[nodiscard]] Result<SampleMean> parse_average(std::string_view text);
 
 /// A message without line breaks.
 [[nodiscard]] std::string one_line(std::string text);

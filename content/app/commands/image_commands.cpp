@@ -29,6 +29,12 @@ void add_render_options(CLI::App& app, RenderOptions& options) {
         app, "--spp",
         "samples per pixel, over lens and shutter, for final images; default: real-time effects",
         options.samples, 1, 65536);
+    add_parsed(
+        app, "--average",
+        "mean of the samples: of the light, as a camera collects it (default with --spp and for "
+        "EXR), or as displayed, which has smooth edges of lamps (default otherwise)",
+        options.average, parse_average)
+        ->type_name("light|displayed");
     add_parsed(app, "--aov", "layers to add to an EXR", options.aovs, parse_list)->type_name("A,B");
     add_show(app, options.show.technique);
     app.add_flag("--off", options.show.off, "with --show: without the technique");

@@ -32,6 +32,7 @@ struct RenderOptions {
     std::optional<std::uint64_t> seed;    ///< overrides the level's
     int samples = 0;                      ///< per pixel; 0: real-time effects, antialiased
     int edge_samples = 16;                ///< antialiasing samples with real-time effects
+    std::optional<SampleMean> average;    ///< empty: of the light for --spp and EXR, else displayed
     std::vector<std::string> aovs;        ///< additional EXR layers
     std::vector<Assignment> assignments;  ///< applied after loading, in order
     std::string camera;                   ///< by name; empty = the level's

@@ -1,6 +1,7 @@
 #include "content/app/commands/render_frames.h"
 
 #include "content/app/commands/exposure_samples.h"
+#include "content/app/commands/image_file.h"
 #include "ecs/base/text.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/motion_blur.h"
@@ -56,6 +57,11 @@ advance_to_view(Stage& stage, Entity camera, const RenderOptions& options, const
          .previous_alpha = alpha - static_cast<float>(steps)});
 }
 
+SampleMean sample_mean(const RenderOptions& options) {
+    const bool light = options.samples > 0 || has_extension(options.out, ".exr");
+    return options.average.value_or(light ? SampleMean::Light : SampleMean::Displayed);
+}
+
 /// Exposure time [s]: at most the time between frames.
 double open_seconds(const World& world, const FrameTimes& time) {
     const auto* blur = world.find_resource<MotionBlur>();
@@ -70,7 +76,8 @@ FrameOutput draw_played(
     const FrameTimes& time) {
     const RenderView view = advance_to_view(stage, camera, options, time);
     return render_accumulated(
-        renderer, stage.world, view, played_samples(stage.world, options), {.aovs = options.aovs});
+        renderer, stage.world, view, played_samples(stage.world, options), {.aovs = options.aovs},
+        sample_mean(options));
 }
 
 /// Averages samples over shutter, lens and pixel while the simulation advances: the ground truth
@@ -80,7 +87,7 @@ FrameOutput draw_sampled(
     const FrameTimes& time, const std::function<void(int)>& progress) {
     const double open = open_seconds(stage.world, time);
     const float weight = 1.0f / static_cast<float>(options.samples);
-    begin_accumulation(renderer, options.size, SampleKind::Instant);
+    begin_accumulation(renderer, options.size, SampleKind::Instant, sample_mean(options));
     bool half_done = false;
     RenderView shown;
     for (int i = 0; i < options.samples; ++i) {

@@ -26,6 +26,9 @@ std::string describe_render(const RenderOptions& options) {
     add("fps", fmt::format("{}", options.fps));
     add("seed", options.seed ? fmt::format("{}", *options.seed) : "of the level");
     add("spp", fmt::format("{}", options.samples));
+    if (options.average) {
+        add("average", *options.average == SampleMean::Light ? "light" : "displayed");
+    }
     add("camera", options.camera);
     add("profile",
         options.profile ? fmt::format("{}", static_cast<int>(*options.profile)) : "of the device");

@@ -8,6 +8,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
 #include "ecs/components/env_probe.h"
+#include "ecs/components/environment.h"
 #include "ecs/components/key_track.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
@@ -64,6 +65,7 @@ constexpr Need kNeeds[] = {
     {"autofocus", {"camera", "", ""}},
     {"autofocus", {"lens", "", ""}},
     {"camera_path", {"camera", "", ""}},
+    {"sunlight", {"directional_light", "", ""}},
     {"crowd_pose", {"skeleton", "", ""}},
     {"crowd_pose", {"clip_player", "crowd_walk", ""}},
     {"crowd_walk", {"skeleton", "", ""}},
@@ -261,6 +263,14 @@ struct SceneCheck {
         });
     }
 
+    void check_sky() {
+        const auto* const environment = world.find_resource<Environment>();
+        if (environment != nullptr && environment->sky == SkyKind::Atmosphere
+            && world.query<const Sunlight, const DirectionalLight>().count() == 0) {
+            warnings.push_back({"environment: the sky \"atmosphere\" is black without a sunlight"});
+        }
+    }
+
     /// Suns with real outdoor illuminance, in an image exposed for a few lux.
     void check_exposure() {
         const auto* const found = world.find_resource<Exposure>();
@@ -443,6 +453,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_cameras();
     check.check_camera_positions();
     check.check_caustics();
+    check.check_sky();
     check.check_exposure();
     check.check_colors<PointLight>();
     check.check_colors<SpotLight>();

@@ -30,11 +30,12 @@ vec3 tone_neutral(vec3 color) {
     return peak < kStart ? color : compressed;
 }
 
-// Fit of the ACES reference and output transforms (Stephen Hill 2017), exposed so that 18 % gray stays near it.
+// Fit of the ACES reference and output transforms (Stephen Hill 2017), exposed so that 18 % gray stays 18 %.
 vec3 tone_aces(vec3 color) {
+    const float kExposure = 1.4619;
     const mat3 kInput = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
     const mat3 kOutput = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
-    vec3 v = kInput * color;
+    vec3 v = kInput * (kExposure * color);
     vec3 a = v * (v + 0.0245786) - 0.000090537;
     vec3 b = v * (0.983729 * v + 0.4329510) + 0.238081;
     return kOutput * (a / b);
