@@ -5,7 +5,7 @@ packages=(
     libglm-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     libtinygltf-dev libopenexr-dev libopenimageio-dev libpng-dev libmeshoptimizer-dev nlohmann-json3-dev
     libtbb-dev libembree-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
-    doctest-dev libbenchmark-dev libkissfft-dev
+    doctest-dev libbenchmark-dev libkissfft-dev libsndfile1-dev libopenal-dev
     glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick ffmpeg
 )
 ci_packages=(
@@ -25,7 +25,7 @@ name_missing() {
         command -v "$tool" >/dev/null 2>&1 || missing+=("$tool")
     done
     if command -v pkg-config >/dev/null 2>&1; then
-        for module in glfw3 epoxy egl tinygltf OpenEXR OpenImageIO libpng libhwy tbb imgui fmt spdlog kissfft-float; do
+        for module in glfw3 epoxy egl tinygltf OpenEXR OpenImageIO libpng libhwy tbb imgui fmt spdlog kissfft-float sndfile openal; do
             pkg-config --exists "$module" 2>/dev/null || missing+=("$module")
         done
     fi

@@ -12,6 +12,7 @@
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/all.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
@@ -20,6 +21,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
+#include "ecs/components/sound_player.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -138,6 +140,25 @@ void move_to_origin(World& world, const std::vector<Entity>& roots) {
     }
 }
 
+/// The sound beside a model, NAME.wav, as `limn speak` writes it; it repeats with the clip.
+void add_sound(World& world, const std::string& path) {
+    const std::filesystem::path wave = std::filesystem::path(path).replace_extension(".wav");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(wave, ignored)) {
+        return;
+    }
+    SoundPlayer sound;
+    sound.file = wave.filename().string();
+    const auto& clips = world.resource<Assets>().clips;
+    world.query<const ClipPlayer>().each([&](const ClipPlayer& player) {
+        if (player.loop && player.clip.index < clips.size()) {
+            const float duration = clips[player.clip.index].duration;
+            sound.every = std::max(sound.every, static_cast<double>(duration));
+        }
+    });
+    world.create(Name{"sound"}, std::move(sound));
+}
+
 Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
@@ -170,6 +191,7 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
         log_warn("{}: found no mesh to draw, expected one", path);
     }
     move_to_origin(world, roots);
+    add_sound(world, path);
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);
     scene.camera = scene.model->camera;

@@ -66,6 +66,7 @@
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/shoaling_waves.h"
 #include "ecs/components/skin_pull.h"
+#include "ecs/components/sound_player.h"
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
@@ -103,6 +104,7 @@ namespace limn {
 
 void register_all_components() {
     register_component<Name>();
+    register_component<SoundPlayer>();
     register_component<FromGltf>();
     register_component<GltfSource>();
     register_component<Lifetime>();

@@ -259,8 +259,8 @@ TEST_CASE("film: EXRs look as the PNGs of the same frames") {
     for (const char* const name : {"f_%d.exr", "f_%d.png"}) {
         REQUIRE(
             run_limn(
-                folder,
-                {"render", "gallery", "-o", name, "--frames", "0:1", "--size", "96x54", "--quiet"})
+                folder, {"render", "gallery", "-o", name, "--frames", "0:1", "--size", "96x54",
+                         "--average", "light", "--quiet"})
                 .exit_code
             == 0);
         REQUIRE(run_limn(folder, {"film", name, "-o", std::string(name).substr(5) + ".mkv"})
@@ -273,6 +273,34 @@ TEST_CASE("film: EXRs look as the PNGs of the same frames") {
     REQUIRE(at != std::string::npos);
     const std::string psnr = difference.substr(at + 9);
     CHECK((psnr.starts_with("inf") || std::atof(psnr.c_str()) > 45));
+}
+
+TEST_CASE("film: has the sounds of its scene, from the time of its first frame") {
+    const TemporaryFolder folder;
+    write_tone(folder.file("tone.wav"));
+    write_text(folder.file("heard.level.json"), R"({
+        "resources": {"environment": {"sky": "uniform"}},
+        "entities": [
+            {"name": "bell", "sound_player": {"file": "tone.wav", "start": 0.5}},
+            {"name": "lost", "sound_player": {"file": "lost.wav"}}
+        ]})");
+    const ProgramRun run = run_limn(
+        folder, {"render", "heard.level.json", "-o", "heard.mkv", "--frames", "3:14", "--fps", "10",
+                 "--size", "64x36", "--quiet"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.err.find("sound: ") != std::string::npos);
+    CHECK(run.err.find("lost.wav: found no such file, expected a sound") != std::string::npos);
+    CHECK(leaves_no_trace(folder));
+    // The film begins at 0.3 s: 0.2 s of silence, then the tone of 1 s.
+    const auto loudness = [&](double from, double seconds) {
+        const std::string text = shell(fmt::format(
+            "ffmpeg -v info -ss {} -t {} -i '{}' -af volumedetect -f null - 2>&1 | sed -n "
+            "'s/.*mean_volume: \\(.*\\) dB/\\1/p'",
+            from, seconds, folder.file("heard.mkv")));
+        return std::atof(text.c_str());
+    };
+    CHECK(loudness(0, 0.15) < -60);
+    CHECK(loudness(0.3, 0.8) > -20);
 }
 
 TEST_CASE("film: what cannot be made is told in one line and leaves nothing") {

@@ -45,6 +45,7 @@ Status run_check(const std::string& scene) {
     StageOptions options;
     options.model.load.max_warnings = SIZE_MAX;
     const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(scene, options));
+    static_cast<void>(stage_sounds(*stage));  // warns
     for (int i = 0; i < kSteps; ++i) {
         step_stage(*stage);
     }

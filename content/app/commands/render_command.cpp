@@ -84,6 +84,21 @@ bool is_whole_frame(const std::string& path, const IVec2& size) {
     return image && image->width == size.x && image->height == size.y;
 }
 
+/// The sounds of the scene while the film lasts, in a file beside its frames; empty: there are
+/// none.
+Result<std::string> mix_film_sound(const RenderSession& session, const RenderOptions& options) {
+    const std::vector<SceneSound> sounds = stage_sounds(*session.stage);
+    if (sounds.empty()) {
+        return std::string();
+    }
+    const std::string path = (std::filesystem::path(frames_folder(options)) / "sound.wav").string();
+    LIMN_TRY(save_wave(
+        mix_sounds(
+            sounds, options.frames->first / options.fps, (options.frames->last + 1) / options.fps),
+        path));
+    return path;
+}
+
 /// The frames that a stopped run left, then all others, then the film.
 Status render_film(RenderSession& session, const RenderOptions& options) {
     const std::filesystem::path folder = frames_folder(options);
@@ -99,6 +114,9 @@ Status render_film(RenderSession& session, const RenderOptions& options) {
     LIMN_TRY(render_range(session, options, pattern, done));
     FilmSettings film = options.film;
     film.fps = options.fps;
+    if (film.sound.empty() && film_kind(options.out) != FilmKind::Gif) {
+        film.sound = LIMN_TRY(mix_film_sound(session, options));
+    }
     const std::vector<std::string> files = LIMN_TRY(find_frame_files(pattern, options.frames));
     LIMN_TRY(make_film(files, options.out, film, options.quiet));
     if (!options.keep_frames) {

@@ -3,9 +3,11 @@
 #include "content/bake/furrow_skin.h"
 #include "content/game/game.h"
 #include "content/load/level/set_value.h"
+#include "ecs/base/log.h"
 #include "ecs/components/time.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace limn {
@@ -42,6 +44,16 @@ Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageO
     }
     stage->world.run(update_furrow_skins);  // after assignments: a frame may need no step
     return stage;
+}
+
+std::vector<SceneSound> stage_sounds(const Stage& stage) {
+    std::vector<std::string> problems;
+    const std::string folder = std::filesystem::path(stage.scene.path).parent_path().string();
+    std::vector<SceneSound> sounds = find_sounds(stage.world, folder, problems);
+    for (const std::string& problem : problems) {
+        log_warn("{}", problem);
+    }
+    return sounds;
 }
 
 void step_stage(Stage& stage) {

@@ -2,6 +2,7 @@
 
 #include "content/app/commands/command_values.h"
 #include "content/load/scene_load.h"
+#include "content/sound/scene_sound.h"
 #include "ecs/base/result.h"
 #include "ecs/schedule.h"
 #include "ecs/world.h"
@@ -12,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace limn {
 
@@ -39,6 +41,9 @@ struct StageOptions {
 /// Fails with the loader's error, or that of the first invalid assignment.
 [[nodiscard]] Result<std::unique_ptr<Stage>>
 open_stage(const std::string& scene, const StageOptions& options = {});
+
+/// The sounds of the scene; warns of those that cannot be read.
+[[nodiscard]] std::vector<SceneSound> stage_sounds(const Stage& stage);
 
 /// One step of the simulation.
 void step_stage(Stage& stage);

@@ -16,6 +16,7 @@ namespace limn {
 namespace {
 
 constexpr int kMaxSteps = 4;             // per frame; beyond that, simulation time slows down
+constexpr int kMaxHeardSteps = 30;       // the same while a sound is heard, which cannot slow down
 constexpr double kMaxFrameTime = 0.25;   // [s] longer frames are clamped
 constexpr double kShaderInterval = 0.5;  // [s] between checks of the shader and level files
 
@@ -81,12 +82,14 @@ void Player::simulate(float dt, const Input& input) {
         set_input(off_stage_->world, input);
     }
     const double step = stage_step(*stage_);
+    const double shown = stage_time(*stage_) - step + unsimulated_;
+    const double correction = sound_.update(shown, !paused_);
     int steps = 0;
     if (!paused_) {
-        unsimulated_ += dt;
+        unsimulated_ += std::max(dt + correction, 0.0);
         steps = static_cast<int>(unsimulated_ / step);
         unsimulated_ -= steps * step;
-        steps = std::min(steps, kMaxSteps);
+        steps = std::min(steps, sound_.is_heard() ? kMaxHeardSteps : kMaxSteps);
     } else if (step_once_) {
         steps = 1;
         unsimulated_ = 0.0;

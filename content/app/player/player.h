@@ -18,6 +18,7 @@
 #include "content/app/player/player_help.h"
 #include "content/app/player/render_scale.h"
 #include "content/app/player/skin_drag.h"
+#include "content/app/player/sound_output.h"
 #include "content/app/player/window.h"
 #include "content/game/wrinkle_trial.h"
 #include "content/load/made_assets.h"
@@ -183,11 +184,12 @@ class Player {
     double until_shader_check_ = 0.0;  ///< [s]
     double until_pick_ = 0.0;          ///< [s] until the distance ahead is measured again
     float ahead_ = INFINITY;           ///< distance to what the camera looks at [m]
-    double real_seconds_ = 0.0;        ///< of the window in which rate_ is measured
-    double simulated_seconds_ = 0.0;   ///< likewise
-    double rate_ = 1.0;                ///< simulated seconds per real second
-    bool gamepad_click_ = false;       ///< A was down in the last frame
-    bool pointer_taken_ = false;       ///< by an editor
+    SoundOutput sound_;
+    double real_seconds_ = 0.0;       ///< of the window in which rate_ is measured
+    double simulated_seconds_ = 0.0;  ///< likewise
+    double rate_ = 1.0;               ///< simulated seconds per real second
+    bool gamepad_click_ = false;      ///< A was down in the last frame
+    bool pointer_taken_ = false;      ///< by an editor
     bool paused_ = false;
     bool step_once_ = false;
     DetailCosts detail_costs_;

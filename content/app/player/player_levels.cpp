@@ -61,6 +61,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     model_panel_.open =
         stage_->scene.model && ModelPanel::has_choices(stage_->world, level_cameras());
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
+    sound_.set_sounds(stage_sounds(*stage_));
     warm_up_level();
     return Done{};
 }
