@@ -184,7 +184,7 @@ Status measure_motion_matching(HeadlessRenderer& /*headless*/, QualityReport& re
     const CourseErrors cut = CourseTrial(0, kShortFrame).run();
     const CourseErrors blended = CourseTrial(blend, kShortFrame).run();
     report.inform("cuts: jump of a joint", cut.jump, "mm");
-    report.at_most("inertialized: jump of a joint", blended.jump, 30, "mm");
+    report.at_most("inertialized: jump of a joint", blended.jump, 10, "mm");
     report.inform("jump of a joint without a change", blended.usual, "mm");
     const double wanted = wanted_distance();
     report.inform("mean distance from the course, as wanted", wanted, "m");

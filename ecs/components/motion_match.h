@@ -71,6 +71,7 @@ struct MatchFoot {
     float anchor_yaw = 0.0f;
     float clock = 0.0f;
     float hold = 0.0f;
+    float arc = 0.0f;
     std::uint32_t planted = 0;
 };
 
@@ -85,6 +86,7 @@ LIMN_FIELDS(MatchFoot) {
     LIMN_FIELD(anchor_yaw, "of a planted foot: turn from the space of the clip", "rad");
     LIMN_FIELD(clock, "since `shift` and `turn` were measured", "s");
     LIMN_FIELD(hold, "how much it pulls the hips where the leg is too short", "", 0, 1);
+    LIMN_FIELD(arc, "height of its way to the foot of the clip", "m");
     LIMN_FIELD(planted, "1: on the ground; 2: pulled off it before the clip lifts it", "", 0, 2);
 }
 

@@ -3,6 +3,7 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/snapshot.h"
+#include "systems/animation/matching/match_feet.h"
 #include "systems/animation/matching/match_step.h"
 #include "tests/systems/match_fixture.h"
 #include "tests/technique.h"
@@ -165,6 +166,78 @@ TEST_CASE("motion match: transitions do not jump, cuts do" * technique("char.ble
     CAPTURE(counts[0]);
     CHECK(jumps[0] < 0.08f);
     CHECK(jumps[1] > 0.2f);
+}
+
+TEST_CASE(
+    "motion match: it stops as soon as people do, in whatever phase of a step"
+    * technique("char.motion-select")) {
+    // Walking, jogging and running [m/s]; time until it is slower than 0.1 m/s [s].
+    const std::array<std::pair<float, float>, 3> limits = {
+        {{1.3f, 1.15f}, {2.7f, 1.45f}, {4.0f, 1.8f}}};
+    for (const auto& [speed, limit] : limits) {
+        for (int phase = 0; phase < 12; ++phase) {
+            CAPTURE(speed);
+            CAPTURE(phase);
+            MatchStage stage;
+            stage.step(10);
+            stage.go({0, 0, speed});
+            stage.step(300 + 4 * phase);
+            stage.go(Vec3(0));
+            int last = 0;
+            for (int i = 1; i <= 240; ++i) {
+                stage.step();
+                last = speed_of(stage.state()) > 0.1f ? i : last;
+            }
+            CHECK(static_cast<float>(last) * kFrame < limit);
+        }
+    }
+}
+
+TEST_CASE("motion match: no joint jumps, nor does its velocity" * technique("char.blend")) {
+    // So short that accelerations do not count: a leg that gets straight has the largest.
+    constexpr float kShort = 1.0f / 1920;
+    MatchStage stage;
+    stage.step(4);
+    std::array<std::array<Vec3, 17>, 3> way{};
+    float largest = 0;
+    for (int i = 0; i < 17 * 1920; ++i) {
+        stage.go(tour_velocity(static_cast<float>(i) * kShort));
+        stage.step(1, kShort);
+        std::rotate(way.begin(), way.begin() + 2, way.end());
+        for (std::uint16_t j = 0; j < way[0].size(); ++j) {
+            way[0][j] = stage.joint(j);
+            const Vec3 change = way[0][j] - 2.0f * way[1][j] + way[2][j];
+            largest = std::max(largest, i < 3 ? 0.0f : glm::length(change));
+        }
+    }
+    CHECK(stage.state().transitions > 10);
+    CHECK(largest < 0.006f);
+}
+
+TEST_CASE("motion match: a foot that is off the clip's steps to it and does not drag") {
+    MatchFoot foot;
+    FootAim aim;
+    aim.local.place = {0, 0.02f, 0};
+    aim.sole = 0.02f;
+    aim.hip = {0, 0.8f, 0};
+    aim.leg = 0.9f;
+    aim.heel = {0, -0.02f, -0.1f};
+    aim.contact = true;
+    place_foot(aim, {}, foot);
+    foot.place = {0, 0.02f, -0.25f};
+    aim.contact = false;
+    capture_foot(aim, {}, {}, foot);
+    float highest = 0;
+    for (int i = 0; i < 21; ++i) {
+        const float before = foot.place.z;
+        step_foot(aim, {}, 0.35f, 0.3f, kFrame, foot);
+        highest = std::max(highest, foot.place.y - aim.sole);
+        // It is fast only where it is up.
+        CHECK((foot.place.z - before) / kFrame < 0.5f + 70 * (foot.place.y - aim.sole));
+    }
+    CHECK(highest > 0.05f);
+    CHECK(highest < 0.07f);
+    CHECK(glm::distance(foot.place, aim.local.place) < 0.001f);
 }
 
 TEST_CASE("motion match: a foot that stands reaches its print, and none is below the ground") {

@@ -17,13 +17,15 @@
 namespace limn {
 namespace {
 
-constexpr float kLongestLeg = 0.998f;   // of a leg, which never is quite straight
-constexpr float kLegSoftness = 0.002f;  // [leg lengths]
+constexpr float kLongestLeg = 0.99f;    // of a leg, which never is quite straight
+constexpr float kLegSoftness = 0.006f;  // [leg lengths]
 constexpr float kHoldTime = 0.1f;       // in which a foot begins or ends to pull [s]
 constexpr float kKneeAhead = 0.6f;      // pull on knees, forward [leg lengths]
 constexpr float kHipsEase = 0.01f;      // over which hips begin to sink [leg lengths]
 constexpr std::uint32_t kPlanted = 1;   // of MatchFoot::planted
 constexpr std::uint32_t kPulledOff = 2;
+constexpr float kArc = 0.25f;          // height of a way over the ground [way]
+constexpr float kHighestArc = 0.12f;   // [leg lengths]
 constexpr float kDeepestSink = 0.07f;  // of the hips above a foot [leg lengths]
 constexpr float kMaxFootRate = 20.0f;  // of an offset [m/s]
 constexpr float kMaxFootSpin = 60.0f;  // [rad/s]
@@ -84,6 +86,14 @@ float needed_sink(const Vec3& hip, const Vec3& ankle, float leg) {
     return way.y - std::sqrt(std::max(most * most - flat, square(0.3f * most)));
 }
 
+/// Height on the arc of what is left of a way, smooth at both ends: 0 .. 1.
+float arc_share(const Vec3& left, const Vec3& whole) {
+    const float part =
+        glm::length(Vec2(left.x, left.z)) / std::max(glm::length(Vec2(whole.x, whole.z)), 1e-4f);
+    const float s = std::clamp(part, 0.0f, 1.0f);
+    return 16 * square(s * (1 - s));
+}
+
 /// Whether a planted foot is too far behind for its leg.
 bool is_stretched(const FootAim& aim, const Transform& at, float deepest, const MatchFoot& foot) {
     const Quat back = glm::conjugate(at.rotation);
@@ -142,6 +152,10 @@ void capture_foot(const FootAim& aim, const Transform& at, const FootRate& rate,
         foot.shift.rate = limited(foot.velocity - rate.velocity, kMaxFootRate);
         foot.turn.rate = limited(foot.spin - rate.spin, kMaxFootSpin);
     }
+    // On its way to the foot of the clip it does not drag along the ground.
+    const float way = glm::length(Vec2(foot.shift.offset.x, foot.shift.offset.z));
+    const float highest = kHighestArc * aim.leg * uniform_scale(at);
+    foot.arc = !aim.contact ? std::min(kArc * way, highest) : 0.0f;
     foot.aim = point_in(aim.local, at).place;
 }
 
@@ -154,7 +168,7 @@ void step_foot(
     const bool was_planted = foot.planted == kPlanted;
     const float far =
         glm::distance(Vec2(foot.place.x, foot.place.z), Vec2(aim_place.x, aim_place.z));
-    if (!aim.contact && foot.planted == kPulledOff) {
+    if (foot.planted == kPulledOff && (!aim.stands || foot.clock >= blend)) {
         foot.planted = 0;
     }
     // A foot lands where its leg reaches, so that the hips do not drop.
@@ -168,7 +182,9 @@ void step_foot(
         }
         const Vec3 turn = inertial_vector(foot.turn, blend, foot.clock);
         const Quat rotation = normalize_or_identity(exp_rotation(0.5f * turn) * target.rotation);
-        Vec3 place = target.place + inertial_vector(foot.shift, blend, foot.clock);
+        const Vec3 shift = inertial_vector(foot.shift, blend, foot.clock);
+        Vec3 place = target.place + shift;
+        place.y += foot.arc * arc_share(shift, foot.shift.offset);
         if (was_planted) {  // rolls over a point that stays
             const Vec3 pivot = uniform_scale(at) * find_pivot(aim, foot.rotation);
             const Vec3 rolled = foot.place + foot.rotation * pivot - rotation * pivot;

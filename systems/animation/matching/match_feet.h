@@ -46,7 +46,8 @@ struct FootAim {
     GroundMove root{};      ///< of the clip
     Vec3 heel = {0, 0, 0};  ///< from the ball, in the space of the ankle [m]
     float sole = 0.0f;      ///< height of the ball of a flat foot [m]
-    bool contact = false;   ///< on the ground
+    bool stands = false;    ///< on the ground
+    bool contact = false;   ///< likewise, and the shown foot has to stand as well
     Vec3 hip = {0, 0, 0};   ///< where the leg begins, in the space of the root [m]
     Vec3 ball = {0, 0, 0};  ///< in the space of the ankle [m]
     float leg = 1.0f;       ///< length of the leg [m]

@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kAngleGain = 3.0f;   // of the angle that is left to turn [1/s]
 constexpr float kSideways = 3.2f;    // largest acceleration across the way [m/s^2]
+constexpr float kBrake = 1.5f;       // deceleration, of the acceleration
 constexpr float kTurnDelay = 0.12f;  // time constant of turns [s]
 constexpr float kAnyWish = 0.05f;    // slower ones have no direction [m/s]
 constexpr float kAnyFacing = 1e-3f;
@@ -44,7 +45,8 @@ void step_match_root(const MatchWish& wish, float dt, MatchRoot& root) {
     root.pull += share * (wanted - root.pull);
     const Vec2 gain = root.pull - root.velocity;
     const float size = glm::length(gain);
-    const float most = wish.acceleration * wish.response;
+    const float brake = glm::dot(gain, root.velocity) < 0 ? kBrake : 1.0f;
+    const float most = brake * wish.acceleration * wish.response;
     root.velocity += share * (size > most ? most / size * gain : gain);
     root.place += dt * root.velocity;
     root.heading += dt * root.turn;

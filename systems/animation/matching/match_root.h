@@ -24,7 +24,7 @@ struct MatchWish {
     Vec2 velocity = {0, 0};     ///< [m/s]
     Vec2 facing = {0, 0};       ///< any length; 0: along the velocity
     float response = 0.22f;     ///< time constant of speeds [s], > 0
-    float acceleration = 2.2f;  ///< largest [m/s^2]
+    float acceleration = 2.2f;  ///< largest; brakes harder [m/s^2]
     float turn_speed = 2.2f;    ///< fastest turn [rad/s]
 };
 

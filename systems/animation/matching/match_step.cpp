@@ -110,9 +110,10 @@ void sample_shown(
     }
 }
 
+/// `pose`: the clip's; `shown`: the displayed one, which has the hips.
 FootAim find_aim(
     const MatchContext& context, const MotionMatchState& state, std::size_t foot,
-    const LocalPose& pose) {
+    const LocalPose& pose, const LocalPose& shown) {
     const MatchClip& clip = playing(context, state);
     const WalkLeg& leg = context.database.body.legs[foot];
     const Vec3 heel = heel_offset(context.skeleton, leg) - ball_offset(context.skeleton, leg);
@@ -126,7 +127,8 @@ FootAim find_aim(
         heel,
         leg.ball.y,
         contact,
-        find_place(context.skeleton, pose, leg.thigh).position,
+        contact,
+        find_place(context.skeleton, shown, leg.thigh).position,
         ball_offset(context.skeleton, leg),
         leg.length};
 }
@@ -198,7 +200,7 @@ void place_feet(const MatchContext& context, const Transform& transform, MotionM
     thread_local LocalPose pose;
     sample_clip_pose(context, state, 0, pose);
     for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
-        place_foot(find_aim(context, state, i, pose), transform, state.feet[i]);
+        place_foot(find_aim(context, state, i, pose, pose), transform, state.feet[i]);
     }
 }
 
@@ -218,7 +220,7 @@ void begin_transition(
     thread_local LocalPose pose;
     sample_clip_pose(context, state, 0, pose);
     for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
-        FootAim aim = find_aim(context, state, i, pose);
+        FootAim aim = find_aim(context, state, i, pose, pose);
         aim.contact = aim.contact && state.feet[i].planted == 1;  // otherwise it has to land first
         capture_foot(aim, transform, aim_rate(context, state, i, transform), state.feet[i]);
     }
@@ -342,11 +344,16 @@ void advance(const MatchContext& context, float dt, Transform& transform, Motion
     state.velocity = Vec2(way.x, way.z) / dt;
     state.turn = move.yaw / dt;
     thread_local LocalPose pose;
+    thread_local LocalPose shown;
     sample_clip_pose(context, state, 0, pose);
+    shown = pose;
+    if (state.blending != 0) {
+        apply_offsets(context, state, state.clock, shown);
+    }
     const float reach = kFootReach * leg_length(context.database.body) * uniform_scale(transform);
     for (std::size_t i = 0; i < 2 && context.database.body.can_walk; ++i) {
         step_foot(
-            find_aim(context, state, i, pose), transform, context.match.blend, reach, dt,
+            find_aim(context, state, i, pose, shown), transform, context.match.blend, reach, dt,
             state.feet[i]);
     }
     if (state.blending != 0 && state.clock >= context.match.blend) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint16_t kNoJoint = 0xffff;
 constexpr float kShortestTake = 1.2f;  // [s]
-constexpr float kLowestHips = 0.83f;   // of their height at rest
+constexpr float kLowestHips = 0.79f;   // of their height at rest
 constexpr float kJerk = 0.14f;         // second difference of places at 60 Hz [leg lengths]
 
 /// One line of the card.
@@ -50,7 +50,12 @@ void add_speed(float speed, std::vector<Cue>& card) {
     for (const float curve : {0.4f, -0.4f, 1.0f, -1.0f, 1.8f, -1.8f}) {
         card.push_back({2.0f, speed, 0, curve * std::min(1.0f, 2 / speed)});
     }
-    card.push_back({halt + 0.5f, 0});
+    // Stops in all phases of a step.
+    for (const float later : {0.0f, 0.09f, 0.18f, 0.27f, 0.36f, 0.45f}) {
+        card.push_back({go + later, speed});
+        card.push_back({halt, 0});
+    }
+    card.push_back({0.5f, 0});
 }
 
 std::vector<Cue> make_card(float walk, float jog, float run) {
