@@ -111,11 +111,13 @@ LIMN_FIELDS(LooseBody) {
 struct LooseState {
     Vec3 velocity = Vec3(0);
     Entity carrier{};
+    float held = 0.0f;
 };
 
 LIMN_FIELDS(LooseState) {
     LIMN_FIELD(velocity, "in the world", "m/s");
     LIMN_FIELD(carrier, "hero who carries it");
+    LIMN_FIELD(held, "since it was picked up", "s");
 }
 
 }  // namespace limn

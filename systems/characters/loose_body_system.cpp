@@ -16,6 +16,9 @@ constexpr float kLooseRestSpeed = 0.3f;     // towards a surface, below which no
 constexpr float kRollingShare = 0.03f;      // of the friction, while it rolls
 constexpr float kLooseWaterDrag = 2.0f;     // [1/s]
 constexpr int kMaxLooseParts = 64;
+constexpr float kGraspTime = 0.18f;  // until hands are at what they pick up [s]
+constexpr float kLiftTime = 0.35f;   // in which they lift it then [s]
+constexpr float kLiftRate = 16.0f;   // at which it follows them in the end [1/s]
 constexpr float kHoldHeight = 0.6f;  // of what is carried, relative to the height of the carrier
 
 struct SolidContact {
@@ -176,12 +179,18 @@ void update_loose_bodies(
         if (const auto* motor = motors.find<const CharacterMotor>(state.carrier)) {
             const Affine carrier = placements.world(state.carrier);
             const float ahead = motor->radius + body.radius + 0.05f;
-            transform.position =
+            const Vec3 place =
                 transform_point(carrier, Vec3(0, kHoldHeight * motor->height, ahead));
             state.velocity = motors.find<const MotorState>(state.carrier)->velocity;
+            state.held += time->step;
+            const float lift = std::clamp((state.held - kGraspTime) / kLiftTime, 0.0f, 1.0f);
+            const float share = 1 - std::exp(-kLiftRate * square(lift) * time->step);
+            const Vec3 carried = transform.position + time->step * lift * state.velocity;
+            transform.position = glm::mix(carried, place, share);
             return;
         }
         state.carrier = {};
+        state.held = 0;
         const LooseStep next = step_loose_body(
             body, {transform.position, state.velocity, transform.rotation}, placed, surfaces,
             time->step);

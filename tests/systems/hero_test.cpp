@@ -94,6 +94,7 @@ TEST_CASE("hero: picks up the nearest body ahead that is not too heavy, and thro
     const Entity ball = stage.add_ball({0.1f, 0.2f, 1.2f});
     stage.press("hero_carry");
     CHECK(stage.world.get<const Hero>(stage.person).carried == ball);
+    stage.step(60);
     CHECK(stage.at(ball).y == near(0.6 * 1.75).epsilon(1e-3));
     CHECK(stage.at(behind).y == near(0.2).epsilon(1e-2));
     CHECK(stage.at(heavy).y == near(0.2).epsilon(1e-2));
@@ -107,10 +108,27 @@ TEST_CASE("hero: picks up the nearest body ahead that is not too heavy, and thro
     CHECK(double(stage.at(ball).y) == near(0.2).epsilon(1e-2));
 }
 
+TEST_CASE("hero: what it picks up waits for the hands, then rises without a jump") {
+    HeroStage stage;
+    const Entity ball = stage.add_ball({0, 0.2f, 0.8f});
+    stage.press("hero_carry");
+    stage.step(6);
+    CHECK(stage.at(ball).y < 0.25f);
+    float largest = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 before = stage.at(ball);
+        stage.step();
+        largest = std::max(largest, glm::distance(stage.at(ball), before));
+    }
+    CHECK(stage.at(ball).y > 1.0f);
+    CHECK(largest < 0.09f);
+}
+
 TEST_CASE("hero: what it carries falls when it is gone") {
     HeroStage stage;
     const Entity ball = stage.add_ball({0, 0.2f, 0.8f});
     stage.press("hero_carry");
+    stage.step(60);
     REQUIRE(stage.at(ball).y > 0.9f);
     stage.world.destroy(stage.person);
     stage.step(90);

@@ -274,6 +274,54 @@ TEST_CASE("motor pose: hands hold what is carried, and lean on what is pushed") 
     CHECK(pusher.motion().push.value < 0.05f);
 }
 
+TEST_CASE("motor pose: stoops for what it picks up from the ground, and stands up with it") {
+    PoseStage stage;
+    const Entity ball =
+        stage.world.create(Transform{.position = {0, 0.2f, 0.8f}}, LooseBody{.radius = 0.2f});
+    stage.step(2);
+    const float upright = stage.joint(stage.body().head).y;
+    stage.world.get<LooseState>(ball).carrier = stage.person;
+    float lowest = upright;
+    float nearest = 1;
+    float jump = 0;
+    std::array<Vec3, 3> heads{};
+    for (int i = 0; i < 90; ++i) {
+        stage.step();
+        std::rotate(heads.begin(), heads.begin() + 2, heads.end());
+        heads[0] = stage.joint(stage.body().head);
+        jump = std::max(jump, i < 3 ? 0.0f : glm::distance(heads[0] + heads[2], 2.0f * heads[1]));
+        lowest = std::min(lowest, heads[0].y);
+        const Vec3 hand = stage.joint(stage.body().arms[0].hand);
+        const float away = glm::distance(hand, stage.world.get<const Transform>(ball).position);
+        nearest = std::min(nearest, i < 24 ? away : 1.0f);
+    }
+    CHECK(lowest < upright - 0.25f);
+    CHECK(nearest < 0.4f);
+    CHECK(jump < 0.03f);
+    CHECK(heads[0].y > upright - 0.06f);
+}
+
+TEST_CASE("motor pose: feet stand on the steps of a stair, and none below who jumps") {
+    PoseStage stage(
+        {make_box_mesh({-1, 0, 0.8f}, {1, 0.15f, 3}), make_box_mesh({-1, 0, 1.3f}, {1, 0.3f, 3})});
+    stage.world.add(stage.person, FootPlant{.step = 0.36f, .speed = 30});
+    stage.go({0, 0, 1.2f});
+    float largest = 0;
+    for (int i = 0; i < 150; ++i) {
+        stage.step();
+        const auto& contacts = stage.world.get<const FootContacts>(stage.person);
+        for (const float lift : contacts.lifts) {
+            largest = std::max(largest, std::abs(lift));
+        }
+    }
+    CHECK(largest > 0.05f);
+    stage.jump();
+    stage.step(25);
+    REQUIRE(stage.state().mode == MotorMode::Fall);
+    const auto& contacts = stage.world.get<const FootContacts>(stage.person);
+    CHECK(std::max(std::abs(contacts.lifts[0]), std::abs(contacts.lifts[1])) < 1e-3f);
+}
+
 TEST_CASE("motor pose: lies in the water while it swims, and stands in it upright") {
     PoseStage stage;
     constexpr float kSurface = 2.5f;
@@ -288,7 +336,9 @@ TEST_CASE("motor pose: lies in the water while it swims, and stands in it uprigh
     stage.step(240);
     CHECK(trunk().z > 0.4f);
     CHECK(trunk().y > 0.05f);
-    CHECK(stage.joint(stage.body().head).y > kSurface - 0.25f);  // breathes
+    CHECK(stage.joint(stage.body().head).y > kSurface - 0.1f);  // breathes
+    const Affine& head = stage.world.get<const Pose>(stage.person).joints[stage.body().head];
+    CHECK(transform_vector(head, {0, 0, 1}).y > -0.35f);  // looks ahead
     CHECK(stage.joint(stage.body().legs[0].foot).z < stage.joint(stage.body().hips).z - 0.3f);
 }
 

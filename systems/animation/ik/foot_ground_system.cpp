@@ -16,12 +16,13 @@ constexpr std::uint16_t kNoFoot = 0xffff;
 
 void update_foot(
     std::span<const PlacedGround> grounds, const Affine& world, const Affine& local,
-    const FootPlant& plant, const Vec3& foot, float step, std::size_t i, FootContacts& contacts) {
+    const FootPlant& plant, const Vec3& foot, bool stands, float step, std::size_t i,
+    FootContacts& contacts) {
     const auto on_floor = [&](float height) {
         return transform_point(world, Vec3(foot.x, height, foot.z));
     };
     const Segment segment = {on_floor(plant.step), on_floor(-plant.step)};
-    const Landing landing = find_landing(grounds, segment);
+    const Landing landing = stands ? find_landing(grounds, segment) : Landing{};
     const PlacedGround* const last = find_placed(grounds, contacts.grounds[i]);
     // Height of the contact as its ground has carried it.
     const float carried =
@@ -52,7 +53,8 @@ void add_foot_contacts(
 }
 
 void update_foot_contacts(
-    Query<const Skeleton, const FootPlant, const Pose, FootContacts> characters,
+    Query<const Skeleton, const FootPlant, const Pose, Optional<const MotorState>, FootContacts>
+        characters,
     GroundQueries grounds, OptionalRes<const FrameTime> time) {
     if (characters.empty() || !grounds.assets) {
         return;
@@ -62,7 +64,7 @@ void update_foot_contacts(
     const Assets& assets = *grounds.assets;
     const float step = time ? time->step : 0.0f;
     characters.each([&](Entity entity, const Skeleton& skeleton, const FootPlant& plant,
-                        const Pose& pose, FootContacts& contacts) {
+                        const Pose& pose, const MotorState* motor, FootContacts& contacts) {
         const std::uint32_t index = skeleton.skeleton.index;
         const Affine world = placements.world(entity);
         Affine local;
@@ -75,10 +77,11 @@ void update_foot_contacts(
             const BodyJoints body = find_body_joints(assets.skeletons[index]);
             feet = {body[BodyPart::LeftFoot], body[BodyPart::RightFoot]};
         }
+        const bool stands = motor == nullptr || motor->mode == MotorMode::Stand;
         for (std::size_t i = 0; i < 2; ++i) {
             if (feet[i] < pose.joints.size()) {
                 const Vec3 foot = transform_point(pose.joints[feet[i]], Vec3(0));
-                update_foot(placed, world, local, plant, foot, step, i, contacts);
+                update_foot(placed, world, local, plant, foot, stands, step, i, contacts);
             }
         }
         contacts.feet = feet;

@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/foot_plant.h"
+#include "ecs/components/motor.h"
 #include "ecs/components/time.h"
 #include "ecs/query.h"
 #include "ecs/system.h"
@@ -18,9 +19,10 @@ void add_foot_contacts(
     Query<const FootPlant, With<Skeleton>, Without<FootContacts>> bare, Commands commands);
 
 /// After everything that moves grounds and characters; before update_poses. Feet are looked for
-/// where they were in the last step.
+/// where they were in the last step. Who jumps, falls or swims has nothing below the feet.
 void update_foot_contacts(
-    Query<const Skeleton, const FootPlant, const Pose, FootContacts> characters,
+    Query<const Skeleton, const FootPlant, const Pose, Optional<const MotorState>, FootContacts>
+        characters,
     GroundQueries grounds, OptionalRes<const FrameTime> time);
 
 }  // namespace limn

@@ -33,6 +33,8 @@ constexpr float kWadeFull = 0.55f;       // depth at which it does so fully
 constexpr float kCruiseSpeed = 0.6f;     // at which it lies in the water [m/s]
 constexpr float kHipsBelow = 0.34f;      // depth of its hips then [leg lengths]
 constexpr float kDive = 1.2f;            // by which it lies [rad]
+constexpr float kArch = 0.3f;            // of its back in a stroke [rad],
+constexpr float kHeadBack = 0.3f;        // and of its neck: it looks ahead
 constexpr float kPull = 0.4f;            // of a stroke, until arms have pulled
 constexpr float kRecover = 0.6f;         // and until hands and feet are drawn up
 constexpr float kRunStep = 0.36f;        // duration of a step of a run, of sqrt(leg / 1 m) [s]
@@ -63,6 +65,12 @@ Stroke find_stroke(float phase) {
     stroke.wide = smooth01(phase / 0.2f) * (1 - smooth01((phase - 0.3f) / 0.25f));
     stroke.kick = smooth01((phase - 0.45f) / 0.12f) * (1 - smooth01((phase - 0.58f) / 0.16f));
     return stroke;
+}
+
+/// How far hands reach down to what it picks up: 0 .. 1.
+float stoop_of(const MotorPoseState& state, const WalkBody& body) {
+    const float hands = 0.5f * (state.hands[0].y + state.hands[1].y);
+    return state.hold.value * smooth01((1.05f * body.hips_place.y - hands) / body.hips_place.y);
 }
 
 /// Where a foot off the ground should be, in the character's space: place as in WalkFoot.
@@ -337,6 +345,16 @@ void apply_arm(
     set_joint_rotation(skeleton, arm.fore, fore_turn * fore, weight, pose);
 }
 
+/// Turns a joint back about an axis in the character's space.
+void bend_joint(
+    const SkeletonData& skeleton, std::uint16_t joint, const Vec3& left, float angle,
+    LocalPose& pose) {
+    if (joint < pose.size() && angle > 1e-4f) {
+        const Quat now = find_place(skeleton, pose, joint).rotation;
+        set_joint_rotation(skeleton, joint, rotation_about(left, -angle) * now, 1, pose);
+    }
+}
+
 void reach_with_hand(
     const SkeletonData& skeleton, const MotorPoseState& state, const WalkBody& body,
     std::size_t side, float weight, LocalPose& pose) {
@@ -419,11 +437,13 @@ void add_motor_targets(const MotorPose& style, const MotorPoseState& state, Walk
                                             : 0.3f * state.sink.value;
     targets.turn = frame.turn;
     targets.shift = frame.shift - Vec3(0, leg * sink, 0);
+    const float stoop = stoop_of(state, body);
+    targets.shift.y -= 0.3f * leg * stoop;
     // The weight stays above the feet: hips go back as the back leans.
-    const float back = 0.3f * std::max(sink, 0.0f) + 0.1f * state.push.value;
+    const float back = 0.3f * std::max(sink, 0.0f) + 0.1f * state.push.value + 0.25f * stoop;
     targets.shift -= leg * back * frame.forward;
     targets.lean = 1.5f * std::max(sink, 0.0f) + 0.45f * state.push.value - 0.06f * state.hold.value
-                   + 0.12f * state.wade.value + 0.3f * state.fling.value
+                   + 0.12f * state.wade.value + 0.3f * state.fling.value + 1.1f * stoop
                    + state.air.value * glm::mix(0.1f, 0.02f, state.fall.value);
     const float free = std::max(state.air.value, state.swim.value);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -442,6 +462,12 @@ void apply_motor_pose(
         return;
     }
     const BodyFrame frame = find_frame(state, body);
+    // A swimmer's back is hollow, and more so as the arms pull, so that the face is out of the
+    // water.
+    const float lies = std::clamp(state.swim.value * state.cruise.value, 0.0f, 1.0f);
+    const float arch = lies * kArch * (0.7f + 0.3f * find_stroke(state.phase).pull);
+    bend_joint(skeleton, body.chest, frame.left, arch, pose);
+    bend_joint(skeleton, body.head, frame.left, lies * kHeadBack, pose);
     const float amount = std::clamp(style.arms, 0.0f, 1.0f);
     const float sink = std::clamp(2.2f * state.sink.value, 0.0f, 1.0f);
     for (std::size_t i = 0; i < 2; ++i) {
