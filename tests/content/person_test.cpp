@@ -176,7 +176,7 @@ TEST_CASE(
             }
         }
         for (const ClipData& clip : rig.clips) {
-            CHECK(check_clip(clip, skeleton.joints.size(), 0));
+            CHECK(check_clip(clip, skeleton.joints.size(), 16));  // bends and faces
         }
     }
 }

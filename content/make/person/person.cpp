@@ -6,10 +6,14 @@
 #include "content/make/person/person_bends.h"
 #include "content/make/person/person_clips.h"
 #include "content/make/person/person_cloth.h"
+#include "content/make/person/person_face.h"
 #include "content/make/person/person_parts.h"
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -112,10 +116,17 @@ MeshData make_person(const PersonShape& shape) {
     for (Vec3& p : mesh.positions) {
         p *= frame.scale;
     }
+    for (MorphTarget& target : mesh.morphs) {
+        for (Vec3& shift : target.positions) {
+            shift *= frame.scale;
+        }
+    }
     if (shape.triangles > 0) {
         simplify_mesh(mesh, static_cast<std::size_t>(shape.triangles));
     } else if (shape.part != PersonPart::Eyes && shape.part != PersonPart::Hair) {
+        std::vector<MorphTarget> face = std::exchange(mesh.morphs, {});
         add_bend_shapes(mesh, make_person_skeleton(frame));
+        std::ranges::move(face, std::back_inserter(mesh.morphs));
     }
     update_bounds(mesh);
     return mesh;
@@ -127,6 +138,12 @@ MeshRig make_person_rig(const PersonShape& shape) {
     rig.skeleton = make_person_skeleton(frame);
     rig.skin = make_rigid_skin(rig.skeleton);
     rig.clips = make_person_clips(frame);
+    const bool has_face = shape.part == PersonPart::All || shape.part == PersonPart::Skin;
+    if (has_face && has_face_shapes(shape)) {
+        // Levels of detail have no bend shapes before those of the face.
+        const std::uint16_t first = shape.triangles > 0 ? 0 : kPersonBendShapes;
+        std::ranges::move(make_person_face_clips(first), std::back_inserter(rig.clips));
+    }
     return rig;
 }
 

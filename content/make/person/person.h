@@ -9,19 +9,20 @@
 namespace limn {
 
 // A dressed person: a low-polygon human for crowds, facing +z, standing on y = 0, arms 45 degrees
-// below the horizontal. It wears the head of head.h with fewer triangles and closed lips, hands
-// with five fingers, and clothes that are closed shells around the body: what is sewn onto them
-// (collars, plackets, pockets, belt loops) are small shells of their own, which levels of detail
-// leave out. Below a height of 1.5 m the proportions are those of a child. The skeleton
-// (person_skeleton.h) has 60 joints with the names of a person (humanoid.h), with anatomical
-// limits. Every person is another one: what is left open is chosen by `seed`.
+// below the horizontal. It wears the head of head.h with fewer triangles, hands with five fingers,
+// and clothes that are closed shells around the body: what is sewn onto them (collars, plackets,
+// pockets, belt loops) are small shells of their own, which levels of detail leave out. Below a
+// height of 1.5 m the proportions are those of a child. The skeleton (person_skeleton.h) has 60
+// joints with the names of a person (humanoid.h), with anatomical limits. Every person is another
+// one: what is left open is chosen by `seed`.
 //
 // Each part is a mesh with its own material; "all" is everything in one. Vertex colors are the
 // colors of skin, cloth and hair, for white materials. Texture coordinates are meters, except for
 // the face, whose chart is that of the head; v runs along strands of hair from roots to tips.
 // Morph targets follow elbows, knees, hips and shoulders that bend (bend_shapes.h), but not in
-// levels of detail. Clips: "idle", and for looking at the body "arms_up", "sit", "squat", "fist"
-// and "palms_up".
+// levels of detail; those of the face (person_face.h) are also in near ones. Clips: "idle", and for
+// looking at the body "arms_up", "sit", "squat", "fist" and "palms_up"; for a morph_player "talk",
+// "blink" and "smile".
 
 enum class PersonPart : std::uint8_t { All, Skin, Eyes, Hair, Shirt, Trousers, Shoes };
 enum class PersonSex : std::uint8_t { Any, Woman, Man };

@@ -2,6 +2,7 @@
 #include "content/make/head/head_layout.h"
 #include "content/make/head/head_parts.h"
 #include "content/make/head/head_wrap.h"
+#include "content/make/person/person_face.h"
 #include "content/make/person/person_head_shape.h"
 #include "content/make/person/person_parts.h"
 #include "content/make/person/person_weights.h"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -32,6 +34,8 @@ struct WovenHead {
     std::vector<Vec3> normals;
     std::vector<Vec3> colors;
     std::vector<Vec2> charts;  ///< columns and rows of head_layout.h
+    std::vector<HeadPoint> points;
+    std::vector<float> steps;  ///< at lips and the edges of lids, whose outlines are kept, 0 .. 1
     std::vector<std::uint32_t> indices;
 };
 
@@ -51,6 +55,20 @@ std::vector<std::uint32_t> close_lips(const HeadLayout& layout) {
         same[edge[k]] = edge[edge.size() - k];
     }
     return same;
+}
+
+/// Lips that open touch, but are two surfaces: the lower one a tenth of a millimeter apart. With
+/// few triangles, the mouth behind them has to be smaller than that of a fine head.
+Vec3 part_lips(const HeadVertex& vertex, Vec3 p) {
+    constexpr Vec3 kMouth = {0, -3.4f, 8.6f};
+    if (vertex.loops != HeadLoops::Mouth || vertex.loop < kLipLoop) {
+        return p;
+    }
+    if (vertex.loop > kLipLoop + 2) {
+        return glm::mix(p, kMouth, 0.12f * static_cast<float>(vertex.loop - kLipLoop - 2));
+    }
+    p.y -= std::sin(vertex.angle) < -1e-3f ? 0.01f : 0.0f;
+    return p;
 }
 
 bool is_in_mouth(const HeadVertex& vertex) {
@@ -96,6 +114,8 @@ void add_neck(WovenHead& head, const PersonFrame& frame, std::vector<std::uint32
                                 : glm::mix(p, edge, static_cast<float>(r) / (kNeckRings - 1)));
             head.colors.push_back(skin);
             head.charts.push_back(head.charts[v] + Vec2(0, 3 * t));
+            head.points.push_back(bone_point(Vec3(0), 0));
+            head.steps.push_back(0);
         }
         for (std::size_t j = 0; j < ring.size(); ++j) {
             const std::size_t next = (j + 1) % ring.size();
@@ -111,6 +131,8 @@ void add_neck(WovenHead& head, const PersonFrame& frame, std::vector<std::uint32
     head.positions.push_back(center - Vec3(0, 0.01f, 0));
     head.colors.push_back(skin);
     head.charts.emplace_back(0, kHeadRows + 6);
+    head.points.push_back(bone_point(Vec3(0), 0));
+    head.steps.push_back(0);
     for (std::size_t j = 0; j < lower.size(); ++j) {
         head.indices.insert(head.indices.end(), {lower[j], middle, lower[(j + 1) % lower.size()]});
     }
@@ -119,19 +141,34 @@ void add_neck(WovenHead& head, const PersonFrame& frame, std::vector<std::uint32
 WovenHead weave_head(const PersonFrame& frame) {
     const HeadShape shape = person_head_shape(frame);
     const HeadLayout& layout = head_layout();
-    const std::vector<Vec3> wrapped = wrap_head(shape);
-    const std::vector<std::uint32_t> same = close_lips(layout);
+    const bool opens = has_face_shapes(frame.look.shape);
+    std::vector<Vec3> wrapped = wrap_head(shape);
+    std::vector<std::uint32_t> same = close_lips(layout);
+    if (opens) {
+        std::iota(same.begin(), same.end(), 0u);
+    }
     WovenHead head;
     std::map<int, std::uint32_t> neck;
     for (std::uint32_t v = 0; v < wrapped.size(); ++v) {
         const HeadVertex& vertex = layout.vertices[v];
+        wrapped[v] = opens ? part_lips(vertex, wrapped[v]) : wrapped[v];
         head.positions.push_back(in_body(frame, wrapped[v]));
-        const bool lash = vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
+        head.points.push_back(skin_point(vertex, wrapped[v]));
+        const bool lash = !opens && vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
                           && std::sin(vertex.angle) > 0.1f;
         Vec3 tint = head_skin_color(vertex, wrapped[v], shape);
         if (vertex.loops == HeadLoops::Mouth) {  // few triangles spread it: a little less of it
             tint = glm::mix(Vec3(1), tint, glm::mix(0.8f, 0.5f, frame.man));
         }
+        if (is_in_mouth(vertex)) {
+            const float deep =
+                static_cast<float>(vertex.loop - kLipLoop) / (kMouthLoops - kLipLoop);
+            tint = Vec3(0.42f, 0.16f, 0.14f) * (1 - 0.85f * deep);
+        }
+        const bool is_lip = opens && vertex.loops == HeadLoops::Mouth && vertex.loop <= kLipLoop;
+        const bool is_lid = opens && vertex.loops == HeadLoops::Eye
+                            && (vertex.loop == kLidLoop || vertex.loop == kLidLoop + 1);
+        head.steps.push_back(is_lip ? 1 - tint.y : is_lid ? 0.3f : 0.0f);
         head.colors.push_back((lash ? 0.5f : 1.0f) * frame.look.skin_color * tint);
         head.charts.push_back(vertex.chart);
         if (vertex.loops == HeadLoops::None && vertex.chart.y == kHeadRows) {
@@ -139,7 +176,7 @@ WovenHead weave_head(const PersonFrame& frame) {
         }
     }
     for (const auto& quad : layout.quads) {
-        const bool hidden = std::any_of(quad.begin(), quad.end(), [&](std::uint32_t v) {
+        const bool hidden = !opens && std::any_of(quad.begin(), quad.end(), [&](std::uint32_t v) {
             return is_in_mouth(layout.vertices[v]);
         });
         if (!hidden) {
@@ -180,6 +217,27 @@ bool has_crowded_edge(const WovenHead& head, const std::vector<std::uint32_t>& i
         }
     }
     return false;
+}
+
+/// Removes pairs of triangles that are the two sides of one, which collapses may leave.
+void remove_flaps(std::vector<std::uint32_t>& indices) {
+    using Corners = std::array<std::uint32_t, 3>;
+    const auto sorted = [&](std::size_t i) {
+        Corners corners = {indices[i], indices[i + 1], indices[i + 2]};
+        std::ranges::sort(corners);
+        return corners;
+    };
+    std::map<Corners, int> sides;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        ++sides[sorted(i)];
+    }
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        if (sides.at(sorted(i)) == 1) {
+            kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
+        }
+    }
+    indices = std::move(kept);
 }
 
 /// 1 at the mouth and the eyes, 0 far from them.
@@ -223,7 +281,9 @@ void blend_normals(WovenHead& head, const PersonFrame& frame) {
 void reduce(WovenHead& head, const PersonFrame& frame) {
     constexpr float kMaxHeadError = 0.05f;
     constexpr int kMaxAttempts = 64;
+    constexpr float kStep = 0.03f;  // that lips and lids stand out for it [m]
     const bool bald = frame.look.shape.hair == PersonHair::Bald;
+    const bool opens = has_face_shapes(frame.look.shape);
     std::vector<Vec3> warped;
     for (const Vec3& p : head.positions) {
         const Vec3 q = (p - frame.head_origin) / frame.head_scale;
@@ -235,8 +295,10 @@ void reduce(WovenHead& head, const PersonFrame& frame) {
             std::exp(-square(glm::distance(side, Vec3(0.0315f, 0.035f, 0.085f)) / 0.02f));
         const float hidden = bald ? 0.0f : glm::smoothstep(0.09f, 0.12f, q.y - 0.4f * q.z);
         const float below = 1 - glm::smoothstep(-0.16f, -0.13f, q.y);
+        const std::size_t v = warped.size();
         warped.push_back(
-            q * (1 + 1.2f * face + 0.6f * (mouth + eye)) * (1 - 0.75f * std::max(hidden, below)));
+            q * (1 + 1.2f * face + 0.6f * (mouth + eye)) * (1 - 0.75f * std::max(hidden, below))
+            + kStep * head.steps[v] * normalize_or(head.normals[v], Vec3(0)));
     }
     std::vector<std::uint32_t> indices;
     // A collapse may join two layers of a lip or an ear: then a few triangles more or fewer.
@@ -248,6 +310,9 @@ void reduce(WovenHead& head, const PersonFrame& frame) {
         indices.resize(meshopt_simplify(
             indices.data(), head.indices.data(), head.indices.size(), &warped[0].x, warped.size(),
             sizeof(Vec3), target, kMaxHeadError));
+        if (opens) {
+            remove_flaps(indices);
+        }
         if (!has_crowded_edge(head, indices)) {
             break;
         }
@@ -310,6 +375,97 @@ void add_brows(BodyMesh& mesh, const PersonFrame& frame, const WovenHead& head) 
     mesh.face_outwards();
 }
 
+/// Lashes of the upper lids: closed strips along their edges, on the fine skin.
+void add_lashes(BodyMesh& mesh, const PersonFrame& frame, const WovenHead& head) {
+    constexpr std::size_t kEvery = 3;  // vertices of the lid from one ring to the next
+    const HeadLayout& layout = head_layout();
+    const float size = frame.head_scale * glm::mix(0.0045f, 0.003f, frame.man);
+    for (const int side : {1, -1}) {
+        std::vector<std::uint32_t> edge;
+        for (std::uint32_t v = 0; v < layout.vertices.size(); ++v) {
+            const HeadVertex& vertex = layout.vertices[v];
+            if (vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
+                && vertex.left == (side > 0) && std::sin(vertex.angle) > 0.02f) {
+                edge.push_back(v);
+            }
+        }
+        const Vec3 eye = frame.at(side > 0 ? PersonJoint::LeftEye : PersonJoint::RightEye);
+        BodyRing last;
+        for (std::size_t k = 0; k < edge.size(); k += kEvery) {
+            const std::uint32_t v = edge[k];
+            const float t = static_cast<float>(k) / static_cast<float>(edge.size() - 1);
+            const Vec3 out = normalize_or(head.positions[v] - eye, Vec3(0, 0, 1));
+            // From the outer corner (0) to the inner one, where they are short.
+            const float length = size
+                                 * std::sqrt(std::max(std::sin(kPi * (0.08f + 0.86f * t)), 0.0f))
+                                 * std::lerp(1.0f, 0.45f, t);
+            const Vec3 way(0.3f * static_cast<float>(side), 0.2f, 1);
+            BodyRing ring;
+            ring.v = 0.03f * t;
+            for (const Vec3& offset :
+                 {Vec3(0, 0.0008f, 0) + 0.0003f * out, -0.0004f * out, length * way}) {
+                BodyVertex vertex;
+                vertex.position = head.positions[v] + offset;
+                vertex.color = 0.25f * glm::min(frame.look.shape.hair_color, Vec3(0.12f));
+                vertex.zone = BodyZone::Head;
+                ring.vertices.push_back(mesh.add(vertex));
+            }
+            if (last.vertices.empty()) {
+                mesh.cap(ring, Vec3(0), 0.002f, false);
+            } else {
+                mesh.join(last, ring, 0.002f);
+            }
+            last = ring;
+        }
+        mesh.cap(last, Vec3(0), 0.002f, true);
+    }
+    mesh.face_outwards();
+}
+
+/// A row of teeth as one closed arch. `upper` 1, or -1.
+void add_teeth(BodyMesh& mesh, const PersonFrame& frame, float upper) {
+    constexpr int kColumns = 9;
+    constexpr float kArchWidth = 2.6f;  // half; as in head_mouth.cpp [cm]
+    constexpr float kArchDepth = 4.2f;
+    const float front = upper > 0 ? 10.3f : 10.05f;
+    const float edge = upper > 0 ? -3.70f : -3.62f;
+    BodyRing last;
+    for (int i = 0; i < kColumns; ++i) {
+        const float turn = 1.15f * (2 * static_cast<float>(i) / (kColumns - 1) - 1);
+        BodyRing ring;
+        ring.v = 0.05f * static_cast<float>(i);
+        for (const Vec2& corner : {Vec2(0, 1), Vec2(0, 0), Vec2(0.5f, 0), Vec2(0.5f, 1)}) {
+            const Vec3 p(
+                (kArchWidth - corner.x) * std::sin(turn), edge + 0.95f * upper * corner.y,
+                front - corner.x - (kArchDepth - corner.x) * (1 - std::cos(turn)));
+            BodyVertex vertex;
+            vertex.position = in_body(frame, p);
+            vertex.color = Vec3(0.5f, 0.46f, 0.38f) * std::lerp(1.0f, 0.55f, corner.y);
+            vertex.zone = BodyZone::Head;
+            ring.vertices.push_back(mesh.add(vertex));
+        }
+        if (last.vertices.empty()) {
+            mesh.cap(ring, Vec3(0), 0.01f, false);
+        } else {
+            mesh.join(last, ring, 0.01f);
+        }
+        last = ring;
+    }
+    mesh.cap(last, Vec3(0), 0.01f, true);
+    mesh.face_outwards();
+}
+
+/// For what lies on the skin: it moves like the vertex of the fine skin nearest to it.
+HeadPoint nearest_point(const WovenHead& head, const Vec3& p) {
+    std::size_t nearest = 0;
+    for (std::size_t v = 1; v < head.points.size(); ++v) {
+        if (glm::distance(head.positions[v], p) < glm::distance(head.positions[nearest], p)) {
+            nearest = v;
+        }
+    }
+    return head.points[nearest];
+}
+
 /// As in the head's own chart; the neck ends at 1.
 Vec2 chart_uv(const Vec2& chart) {
     return {0.5f + chart.x / kHeadColumns, (chart.y + 13) / (kHeadRows + 20)};
@@ -331,8 +487,13 @@ MeshData make_person_head(const PersonFrame& frame) {
     WovenHead head = weave_head(frame);
     BodyMesh brows;
     add_brows(brows, frame, head);
+    const bool opens = has_face_shapes(frame.look.shape);
+    if (opens) {
+        add_lashes(brows, frame, head);
+    }
     reduce(head, frame);
     MeshData mesh;
+    std::vector<HeadPoint> points;
     std::map<std::pair<std::uint32_t, bool>, std::uint32_t> made;  // copies beyond the seam
     for (std::size_t i = 0; i < head.indices.size(); i += 3) {
         float high = -kHeadColumns;
@@ -345,6 +506,7 @@ MeshData make_person_head(const PersonFrame& frame) {
             const auto [found, added] =
                 made.try_emplace({v, beyond}, static_cast<std::uint32_t>(mesh.positions.size()));
             if (added) {
+                points.push_back(head.points[v]);
                 mesh.positions.push_back(head.positions[v]);
                 mesh.normals.push_back(normalize_or(head.normals[v], Vec3(0, 1, 0)));
                 mesh.colors.emplace_back(head.colors[v], 1.0f);
@@ -358,6 +520,19 @@ MeshData make_person_head(const PersonFrame& frame) {
     generate_tangents(mesh);
     update_bounds(mesh);
     append_part(mesh, brows.finish(frame, kPi));
+    if (opens) {
+        // Brows, lashes, and what the tangents have split.
+        for (std::size_t v = points.size(); v < mesh.positions.size(); ++v) {
+            points.push_back(nearest_point(head, mesh.positions[v]));
+        }
+        for (const float upper : {1.0f, -1.0f}) {
+            BodyMesh teeth;
+            add_teeth(teeth, frame, upper);
+            append_part(mesh, teeth.finish(frame, kPi));
+            points.resize(mesh.positions.size(), bone_point(Vec3(0), 0.5f - 0.5f * upper));
+        }
+        add_face_shapes(mesh, points, frame);
+    }
     return mesh;
 }
 

@@ -304,6 +304,18 @@ void append_part(MeshData& mesh, const MeshData& part) {
     }
     append(mesh.skin.joints, part.skin.joints);
     append(mesh.skin.weights, part.skin.weights);
+    mesh.morphs.resize(std::max(mesh.morphs.size(), part.morphs.size()));
+    for (std::size_t t = 0; t < part.morphs.size(); ++t) {
+        MorphTarget& target = mesh.morphs[t];
+        const MorphTarget& more = part.morphs[t];
+        target.name = more.name;
+        target.action_unit = more.action_unit;
+        for (const std::uint32_t v : more.vertices) {
+            target.vertices.push_back(first + v);
+        }
+        append(target.positions, more.positions);
+        append(target.normals, more.normals);
+    }
     grow(mesh.bounds, part.bounds);
 }
 

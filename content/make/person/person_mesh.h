@@ -86,7 +86,8 @@ class BodyMesh {
 /// new normals would hinder simplify_mesh.
 void thin_out(MeshData& mesh, const PersonFrame& frame, float error, float crease);
 
-/// Appends `part`, which has the same vertex arrays, to `mesh`; both without morph targets.
+/// Appends `part`, which has the same vertex arrays, to `mesh`. Morph targets of `part`, if it has
+/// any, are the same list.
 void append_part(MeshData& mesh, const MeshData& part);
 
 }  // namespace limn
