@@ -233,6 +233,7 @@ void add_camera_systems(SystemList& systems) {
     systems.add<adjust_lenses>(View);
     systems.add<choose_pose_rates>(View, Both);    // likewise, for the next step
     systems.add<choose_mesh_levels>(View, Both);   // after everything that moves cameras
+    systems.add<choose_pose_joints>(View, Both);   // after meshes: what they need
     systems.add<update_relief_boxes>(View, Both);  // likewise
 }
 

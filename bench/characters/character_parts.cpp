@@ -13,6 +13,7 @@ void add_ragdoll_rows(CharacterBench& bench);
 void add_world_rows(CharacterBench& bench);
 void add_graph_rows(CharacterBench& bench);
 void add_people_rows(CharacterBench& bench);
+void add_level_rows(CharacterBench& bench);
 
 std::span<const CharacterPart> character_parts() {
     static constexpr CharacterPart kParts[] = {
@@ -24,6 +25,7 @@ std::span<const CharacterPart> character_parts() {
         {"avoid", add_avoid_rows},      // 14 .. 18: crowds
         {"memory", add_memory_rows},    // 20, 21
         {"world", add_world_rows},      // update_poses
+        {"levels", add_level_rows},     // of detail of the skeleton
         {"graph", add_graph_rows},      // motion graphs
         {"ragdoll", add_ragdoll_rows}, {"people", add_people_rows},  // 19, 22: whole steps
     };

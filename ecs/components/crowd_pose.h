@@ -8,8 +8,8 @@
 namespace limn {
 
 /// With a Skeleton and a ClipPlayer: poses the character as one of a crowd, from a compressed copy
-/// of its clip, 16 at a time, and less often far from the camera. Clips that cannot be compressed
-/// are sampled as without it.
+/// of its clip, 16 at a time, less often far from the camera, and only the joints that its meshes
+/// need at their level of detail. Clips that cannot be compressed are sampled as without it.
 struct CrowdPose {
     bool compressed = true;
     float full_rate_within = 15.0f;
@@ -27,10 +27,11 @@ LIMN_FIELDS(CrowdPose) {
         half_rate_within, "up to which in every second step; beyond, in every fourth", "m", 0, 1e6);
 }
 
-/// How often a crowd's character is posed, chosen by choose_pose_rates(), and from what it fades
-/// after its clip was changed.
+/// How often a crowd's character is posed, chosen by choose_pose_rates(), which of its joints, by
+/// choose_pose_joints(), and from what it fades after its clip was changed.
 struct CrowdPoseState {
     std::uint32_t interval = 1;  ///< steps: 1, 2 or 4
+    std::uint32_t joints = 0;    ///< the first ones; 0: all
     ClipId clip{};
     float time = 0.0f;
     ClipId from{};
@@ -40,6 +41,7 @@ struct CrowdPoseState {
 
 LIMN_FIELDS(CrowdPoseState) {
     LIMN_FIELD(interval, "steps from one pose to the next", "", 1, 4);
+    LIMN_FIELD(joints, "how many of its first joints are posed, 0 = all");
     LIMN_FIELD(clip, "what it played in the last step");
     LIMN_FIELD(time, "in that clip", "s");
     LIMN_FIELD(from, "what it played before");

@@ -203,6 +203,11 @@ Status check_skin(const SkinData& skin, std::size_t joints) {
     return Done{};
 }
 
+std::size_t used_joints(const SkinWeights& weights) {
+    const auto last = std::max_element(weights.joints.begin(), weights.joints.end());
+    return last != weights.joints.end() ? *last + 1u : 0u;
+}
+
 std::size_t clip_size(const ClipData& clip) {
     std::size_t size = 0;
     for (const ClipSheet& sheet : clip.sheets) {

@@ -56,7 +56,7 @@ struct JointFreedom {
 };
 
 /// Joints are sorted parents first, so that one pass computes all matrices
-/// (char.skeleton-hierarchy).
+/// (char.skeleton-hierarchy). The first ones are a skeleton of less detail.
 struct SkeletonData {
     std::string name;
     std::vector<std::string> joints;    ///< names
@@ -127,6 +127,9 @@ struct SkinWeights {
 
     [[nodiscard]] bool empty() const { return first.empty(); }
 };
+
+/// How many joints of a skin the weights need: up to the last one that has a weight.
+[[nodiscard]] std::size_t used_joints(const SkinWeights& weights);
 
 /// A morph target that another one follows: an in-between or a corrective (J. Lewis et al.,
 /// "Practice and Theory of Blendshape Facial Models", 2014).

@@ -5,13 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 
 // Techniques: face.soffd
 
 namespace limn {
 
 DeformSource find_deform_source(
-    const World& world, const Assets& assets, Entity entity, MeshId mesh, std::uint32_t joint_count,
+    const World& world, const Assets& assets, Entity entity, MeshId mesh, std::size_t joint_count,
     const Deformed& settings) {
     const std::string& name = assets.meshes[mesh.index].name;
     const bool alive = !settings.character.is_null() && world.alive(settings.character);
@@ -48,19 +50,19 @@ DeformSource find_deform_source(
         return source;
     }
     const SkinData& skin = assets.skins[skin_id.index];
-    const std::size_t joints = source.pose != nullptr ? source.pose->joints.size() : 0;
-    const auto beyond = std::find_if(
-        skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
-    if (beyond != skin.joints.end()) {
-        source.fault = fmt::format(
-            "deformed mesh {}: skin {} uses joint {}, but its character's pose has {}", name,
-            skin.name, *beyond, joints);
-        return source;
-    }
     if (skin.joint_from_mesh.size() != skin.joints.size() || skin.joints.size() < joint_count) {
         source.fault = fmt::format(
             "deformed mesh {}: its weights use {} joints, but skin {} has {} and {} matrices", name,
             joint_count, skin.name, skin.joints.size(), skin.joint_from_mesh.size());
+        return source;
+    }
+    const std::size_t joints = source.pose != nullptr ? source.pose->joints.size() : 0;
+    const std::span used = std::span(skin.joints).first(joint_count);
+    const auto beyond = std::ranges::find_if(used, [&](std::uint16_t j) { return j >= joints; });
+    if (beyond != used.end()) {
+        source.fault = fmt::format(
+            "deformed mesh {}: skin {} uses joint {}, but its character's pose has {}", name,
+            skin.name, *beyond, joints);
         return source;
     }
     source.skin = joint_count > 0 ? &skin : nullptr;

@@ -235,9 +235,11 @@ void DeformedList::find_wrinkles(
 void DeformedList::make_entry_palette(
     const Entry& entry, const StepTime& time, std::vector<Affine>& palette) {
     if (entry.by_offsets) {
-        make_joint_palette(entry.skin, entry.pose, time, palette);
+        make_joint_palette(entry.skin, entry.pose, time, palette, entry.rest->joint_count);
     } else {
-        make_palette(entry.skin, entry.pose, entry.settings.skinning, time, palette);
+        make_palette(
+            entry.skin, entry.pose, entry.settings.skinning, time, palette,
+            entry.rest->joint_count);
     }
 }
 

@@ -2,7 +2,10 @@
 
 #include "ecs/base/rotation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 
 // Techniques: char.skin-bone-offset, char.skin-vertex-offset
 
@@ -30,14 +33,16 @@ bool shows_before(const std::vector<ValueJump<T>>& jumps, std::size_t index, con
 }  // namespace
 
 void make_joint_palette(
-    const SkinData* skin, const Pose* pose, const StepTime& time, std::vector<Affine>& palette) {
+    const SkinData* skin, const Pose* pose, const StepTime& time, std::vector<Affine>& palette,
+    std::size_t joints) {
     palette.clear();
     if (skin == nullptr || pose == nullptr) {
         return;
     }
     const bool moves = time.alpha != 1.0f && pose->previous.size() == pose->joints.size();
-    palette.reserve(skin->joints.size());
-    for (const std::uint16_t j : skin->joints) {
+    const std::size_t count = std::min(joints, skin->joints.size());
+    palette.reserve(count);
+    for (const std::uint16_t j : std::span(skin->joints).first(count)) {
         palette.push_back(
             shows_before(pose->jumps, j, time) ? find_jump(pose->jumps, j)->before
             : moves ? mix_affine(pose->previous[j], pose->joints[j], time.alpha)
@@ -47,8 +52,8 @@ void make_joint_palette(
 
 void make_palette(
     const SkinData* skin, const Pose* pose, Skinning skinning, const StepTime& time,
-    std::vector<Affine>& palette) {
-    make_joint_palette(skin, pose, time, palette);
+    std::vector<Affine>& palette, std::size_t joints) {
+    make_joint_palette(skin, pose, time, palette, joints);
     for (std::size_t i = 0; i < palette.size(); ++i) {
         const Affine posed = palette[i] * skin->joint_from_mesh[i];
         palette[i] = skinning == Skinning::Linear

@@ -15,16 +15,17 @@
 
 namespace limn {
 
-// Crowds: compressed copies of their clips, and how often each character is posed. update_poses()
-// poses those that are due.
+// Crowds: compressed copies of their clips, how often each character is posed, and how many of its
+// joints. update_poses() poses those that are due.
 
 /// Adds a state to every CrowdPose without one.
 void add_crowd_poses(Query<const CrowdPose, Without<CrowdPoseState>> crowds, Commands commands);
 
-/// Compresses clips that crowds play for the first time.
+/// Compresses clips that crowds play for the first time, and makes rigs of as many joints as they
+/// need.
 void prepare_crowd_clips(
-    Query<const CrowdPose, const Skeleton, const ClipPlayer> crowds, Res<const Assets> assets,
-    Res<CrowdLibrary> library);
+    Query<const CrowdPose, const Skeleton, const ClipPlayer, Optional<const CrowdPoseState>> crowds,
+    Res<const Assets> assets, Res<CrowdLibrary> library);
 
 /// Seconds over which a crowd's character fades from one clip to another.
 inline constexpr float kCrowdFade = 0.3f;
@@ -42,5 +43,12 @@ choose_pose_interval(const CrowdPose& crowd, float distance, std::uint32_t curre
 void choose_pose_rates(
     Query<const CrowdPose, const WorldTransform, CrowdPoseState> crowds,
     Query<const Camera, const WorldTransform> cameras);
+
+/// Finds how many joints the meshes on each character need, and what is attached to them
+/// (pose_levels.h). A pose that lacks some gets them at once. After the meshes were chosen.
+void choose_pose_joints(
+    Query<const CrowdPose, const Skeleton, CrowdPoseState, Pose> crowds,
+    Query<const Deformed, const MeshInstance> meshes, Query<const JointAttachment> attachments,
+    Res<const Assets> assets, Res<CrowdLibrary> library);
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 
 // Techniques: wrinkle.compression.face-model
 
@@ -26,12 +27,12 @@ void find_weights(const MorphWeights* morphs, std::size_t first, std::vector<flo
     }
 }
 
-bool has_all_joints(const MeshData& mesh, const SkinData& skin, const Pose& pose) {
-    const auto below = [](std::size_t count) {
-        return [count](std::size_t joint) { return joint < count; };
-    };
-    return std::all_of(mesh.skin.joints.begin(), mesh.skin.joints.end(), below(skin.joints.size()))
-           && std::all_of(skin.joints.begin(), skin.joints.end(), below(pose.joints.size()));
+/// Whether the pose has the first `used` joints of the skin.
+bool has_joints(const SkinData& skin, std::size_t used, const Pose& pose) {
+    return used <= skin.joints.size()
+           && std::ranges::all_of(std::span(skin.joints).first(used), [&pose](std::size_t joint) {
+                  return joint < pose.joints.size();
+              });
 }
 
 }  // namespace
@@ -52,12 +53,13 @@ bool deform_positions(
         deform_points(deformers->now, positions);
     }
     if (skin != nullptr && pose != nullptr) {
-        if (!has_all_joints(mesh, *skin, *pose)) {
+        const std::size_t used = used_joints(mesh.skin);
+        if (!has_joints(*skin, used, *pose)) {
             positions = mesh.positions;
             return false;
         }
         const RestVertices rest = {positions, {}, {}};
-        memory.palette.resize(skin->joints.size());
+        memory.palette.resize(used);
         compute_skin_palette(*skin, pose->joints, memory.palette);
         if (deformed.skinning == Skinning::Linear) {
             skin_linear(mesh.skin, memory.palette, rest, moved, 0, positions.size());

@@ -48,16 +48,32 @@ inline FramePair find_frames(const CrowdClip& clip, float time) {
     return {first, 1, at - static_cast<float>(first)};
 }
 
+/// Of the joints that `rows` has.
 inline void copy_all_constants(const CrowdClip& clip, PoseRows& rows) {
-    const auto copy = [&rows](const std::vector<float>& constants, std::size_t first) {
-        if (!constants.empty()) {
+    const std::size_t stride = pose_stride(clip.joints);
+    const auto copy = [&](const std::vector<float>& constants, std::size_t first,
+                          std::size_t count) {
+        if (constants.empty()) {
+            return;
+        }
+        float* const to = rows.values.data() + first * rows.stride;
+        if (rows.stride == stride) {
+            std::memcpy(to, constants.data(), count * stride * sizeof(float));
+            return;
+        }
+        for (std::size_t row = 0; row < count; ++row) {
             std::memcpy(
-                rows.values.data() + first * rows.stride, constants.data(),
-                (constants.size() - kPosePadding) * sizeof(float));
+                to + row * rows.stride, constants.data() + row * stride,
+                rows.stride * sizeof(float));
         }
     };
-    copy(clip.rotations.constants, 0);
-    copy(clip.translations.constants, 4);
+    copy(clip.rotations.constants, 0, 4);
+    copy(clip.translations.constants, 4, 3);
+}
+
+/// How many joints of a run are among the first `joints`, at least one.
+inline std::size_t length_within(const TrackRun& run, std::size_t joints) {
+    return std::min<std::size_t>(run.count, joints - run.first);
 }
 
 /// Where the rows of each character are and where its matrices go.
@@ -201,17 +217,22 @@ HWY_INLINE void store_first(D d, hn::Vec<D> v, std::size_t count, float* to) {
     }
 }
 
-/// The animated rotations.
+/// The animated rotations of the first `joints`.
 HWY_INLINE void sample_rotations(
-    const CrowdTracks& tracks, const crowd::FramePair& at, float* rows, std::size_t stride) {
+    const CrowdTracks& tracks, const crowd::FramePair& at, std::size_t joints, float* rows,
+    std::size_t stride) {
     const std::size_t width = tracks.animated;
     const std::uint16_t* const frame = tracks.frames.data() + 3 * width * at.first;
     const std::size_t next = 3 * width * at.step;
     for (const TrackRun& run : tracks.runs) {
+        if (run.first >= joints) {
+            break;
+        }
         const std::uint16_t* const words = frame + run.track;
         float* const out = rows + run.first;
         each_vector(
-            kFloats, 0, run.count, [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
+            kFloats, 0, crowd::length_within(run, joints),
+            [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
                 const auto mixed =
                     mix(unpack(d, words + i, width), unpack(d, words + next + i, width),
                         hn::Set(d, at.u));
@@ -225,17 +246,21 @@ HWY_INLINE void sample_rotations(
 }
 
 HWY_INLINE void sample_translations(
-    const CrowdTracks& tracks, const crowd::FramePair& at, float* rows, std::size_t stride) {
+    const CrowdTracks& tracks, const crowd::FramePair& at, std::size_t joints, float* rows,
+    std::size_t stride) {
     const std::size_t width = tracks.animated;
     const std::uint16_t* const frame = tracks.frames.data() + 3 * width * at.first;
     const std::size_t next = 3 * width * at.step;
     for (const TrackRun& run : tracks.runs) {
+        if (run.first >= joints) {
+            break;
+        }
         const std::uint16_t* words = frame + run.track;
         const float* range = tracks.ranges.data() + run.track;
         float* out = rows + run.first;
         for (int axis = 0; axis < 3; ++axis) {
             each_vector(
-                kFloats, 0, run.count,
+                kFloats, 0, crowd::length_within(run, joints),
                 [=](auto d, std::size_t i, std::size_t count) LIMN_CROWD_LAMBDA {
                     const hn::Rebind<std::uint16_t, decltype(d)> dh;
                     const hn::RebindToSigned<decltype(d)> di;
@@ -488,8 +513,9 @@ HWY_INLINE void multiply_block(
 bool sample_rows(const CrowdClip& clip, float time, PoseRows& rows) {
     const crowd::FramePair at = crowd::find_frames(clip, time);
     crowd::copy_all_constants(clip, rows);
-    sample_rotations(clip.rotations, at, rows.values.data(), rows.stride);
-    sample_translations(clip.translations, at, rows.values.data() + 4 * rows.stride, rows.stride);
+    sample_rotations(clip.rotations, at, rows.joints, rows.values.data(), rows.stride);
+    sample_translations(
+        clip.translations, at, rows.joints, rows.values.data() + 4 * rows.stride, rows.stride);
     return true;
 }
 
@@ -592,21 +618,25 @@ Affine multiply(const Affine& a, const Affine& b) {
     return product;
 }
 
-void sample_character(const CrowdCharacter& character, PoseRows& rows, PoseRows& next) {
-    sample_crowd_clip(*character.clip, character.time, rows);
+void sample_character(
+    const CrowdCharacter& character, std::size_t joints, PoseRows& rows, PoseRows& next) {
+    sample_crowd_clip(*character.clip, character.time, rows, joints);
     if (character.next != nullptr) {
-        sample_crowd_clip(*character.next, character.next_time, next);
+        sample_crowd_clip(*character.next, character.next_time, next, joints);
         blend_poses(rows, next, character.weight, rows);
     }
 }
 
 }  // namespace
 
-CrowdRig make_crowd_rig(const SkeletonData& skeleton) {
+CrowdRig make_crowd_rig(const SkeletonData& skeleton, std::size_t max_joints) {
     CrowdRig rig;
-    const std::size_t joints = skeleton.parents.size();
-    rig.parents = skeleton.parents;
-    rig.scales = skeleton.rest.scales;
+    const std::size_t joints = std::min(skeleton.parents.size(), max_joints);
+    const auto first = [joints](const auto& of) {
+        return std::vector(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(joints));
+    };
+    rig.parents = first(skeleton.parents);
+    rig.scales = first(skeleton.rest.scales);
     rig.slots.assign(joints, CrowdRig::kNoSlot);
     rig.parent_slots.assign(joints, CrowdRig::kNoSlot);
     std::vector<std::size_t> last_child(joints, 0);  // 0: none, since the root is no child
@@ -637,8 +667,10 @@ CrowdRig make_crowd_rig(const SkeletonData& skeleton) {
     return rig;
 }
 
-void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows) {
-    rows.resize(clip.joints);
+void sample_crowd_clip_scalar(
+    const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints) {
+    const std::size_t joints = std::min(clip.joints, max_joints);
+    rows.resize(joints);
     const crowd::FramePair at = crowd::find_frames(clip, time);
     const CrowdTracks& turns = clip.rotations;
     const auto packed = [&](std::size_t frame, std::size_t column) {
@@ -648,7 +680,7 @@ void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows)
     };
     crowd::copy_all_constants(clip, rows);
     for (const TrackRun& run : turns.runs) {
-        for (std::size_t i = 0; i < run.count; ++i) {
+        for (std::size_t i = 0; i < run.count && run.first + i < joints; ++i) {
             const std::size_t column = run.track + i;
             const Quat mixed =
                 mix(packed(at.first, column), packed(at.first + at.step, column), at.u);
@@ -659,7 +691,7 @@ void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows)
     const std::size_t width = moves.animated;
     const std::uint16_t* const frame = moves.frames.data() + 3 * width * at.first;
     for (const TrackRun& run : moves.runs) {
-        for (std::size_t i = 0; i < run.count; ++i) {
+        for (std::size_t i = 0; i < run.count && run.first + i < joints; ++i) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const std::size_t column = axis * width + run.track + i;
                 const float steps = mix(frame[column], frame[column + 3 * width * at.step], at.u);
@@ -670,10 +702,10 @@ void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows)
     }
 }
 
-void sample_crowd_clip(const CrowdClip& clip, float time, PoseRows& rows) {
-    rows.resize(clip.joints);
+void sample_crowd_clip(const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints) {
+    rows.resize(std::min(clip.joints, max_joints));
     if (!HWY_DYNAMIC_DISPATCH(sample_rows)(clip, time, rows)) {
-        sample_crowd_clip_scalar(clip, time, rows);
+        sample_crowd_clip_scalar(clip, time, rows, max_joints);
     }
 }
 
@@ -749,9 +781,9 @@ void pose_crowd_scalar(
     PoseRows rows;
     PoseRows next;
     for (const CrowdCharacter& character : characters) {
-        sample_crowd_clip_scalar(*character.clip, character.time, rows);
+        sample_crowd_clip_scalar(*character.clip, character.time, rows, rig.joints());
         if (character.next != nullptr) {
-            sample_crowd_clip_scalar(*character.next, character.next_time, next);
+            sample_crowd_clip_scalar(*character.next, character.next_time, next, rig.joints());
             blend_poses_scalar(rows, next, character.weight, rows);
         }
         compute_crowd_joints(rig, rows, {character.joints, rig.joints()}, joint_from_mesh);
@@ -768,7 +800,7 @@ void pose_crowd(
         const PoseRows* local[kPoseLanes];
         Affine* joints[kPoseLanes];
         for (std::size_t c = 0; c < group.size(); ++c) {
-            sample_character(group[c], rows[c], rows[kPoseLanes]);
+            sample_character(group[c], rig.joints(), rows[c], rows[kPoseLanes]);
             local[c] = &rows[c];
             joints[c] = group[c].joints;
         }

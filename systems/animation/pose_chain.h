@@ -17,6 +17,10 @@ namespace limn {
 // Like those of pose_kernels.h, each kernel has a version for the machine's widest vectors and a
 // plain C++ one, `_scalar`, with bit-identical results: exact square roots and divisions, no fused
 // multiply-add. A character's matrices do not depend on its neighbors.
+//
+// Joints are sorted parents first, so that the first ones of a skeleton are a skeleton too: one of
+// less detail if what matters most comes first. A rig of fewer joints than its clips have samples,
+// blends and multiplies only those, with the bits that they have among all.
 
 /// A skeleton prepared for that. A joint's matrix stays in a slot until its last child has read it:
 /// a few slots stay in the cache, all matrices of 16 characters would not.
@@ -31,7 +35,10 @@ struct CrowdRig {
 
     [[nodiscard]] std::size_t joints() const { return parents.size(); }
 };
-[[nodiscard]] CrowdRig make_crowd_rig(const SkeletonData& skeleton);
+inline constexpr std::size_t kAllJoints = ~std::size_t{0};
+/// Of the first `max_joints` joints.
+[[nodiscard]] CrowdRig
+make_crowd_rig(const SkeletonData& skeleton, std::size_t max_joints = kAllJoints);
 
 /// Local rotations and translations of one character: seven rows, x y z w of the rotations and x y
 /// z of the translations.
@@ -63,7 +70,7 @@ struct CrowdCharacter {
     const CrowdClip* next = nullptr;  ///< null: not blended
     float next_time = 0.0f;           ///< [s], clamped
     float weight = 0.0f;              ///< of `next`, 0 .. 1
-    Affine* joints = nullptr;         ///< written: a matrix per joint
+    Affine* joints = nullptr;         ///< written: a matrix per joint of the rig
 };
 
 /// Poses characters of one skeleton. Without `joint_from_mesh` the result is character_from_joint;
@@ -77,9 +84,12 @@ void pose_crowd_scalar(
 
 // Its steps.
 
-/// Rotations are interpolated linearly between two frames and normalized.
-void sample_crowd_clip(const CrowdClip& clip, float time, PoseRows& rows);
-void sample_crowd_clip_scalar(const CrowdClip& clip, float time, PoseRows& rows);
+/// Rotations are interpolated linearly between two frames and normalized. Only of the first
+/// `max_joints` joints.
+void sample_crowd_clip(
+    const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints = kAllJoints);
+void sample_crowd_clip_scalar(
+    const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints = kAllJoints);
 
 /// From `a` at weight 0 to `b` at 1, along the shorter arcs; `out` may be one of them.
 void blend_poses(const PoseRows& a, const PoseRows& b, float weight, PoseRows& out);

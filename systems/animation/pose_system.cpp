@@ -10,6 +10,7 @@
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
 #include "systems/animation/matching/match_step.h"
+#include "systems/animation/pose_levels.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
 #include "systems/animation/twist_pose.h"
 #include "systems/animation/walk/apply_motor_pose.h"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 // Techniques: char.morph-anim
 
@@ -116,7 +118,7 @@ void apply_jumps(
         if (clip == nullptr || !may_jump(*clip, step)) {
             return;
         }
-        joints.resize(pose != nullptr ? pose->joints.size() : 0, kNoJump);
+        joints.resize(pose != nullptr ? skeleton.joints.size() : 0, kNoJump);
         weights.resize(morph != nullptr ? morph->weights.size() : 0, kNoJump);
         if (moves_joints && fits(*clip, joints.size(), weights.size())) {
             find_clip_jumps(*clip, step, joints, weights);
@@ -125,7 +127,7 @@ void apply_jumps(
         }
     };
     if (playback.is_cut) {
-        joints.resize(pose != nullptr ? pose->joints.size() : 0, 0.0f);
+        joints.resize(pose != nullptr ? skeleton.joints.size() : 0, 0.0f);
         weights.resize(morph != nullptr ? morph->weights.size() : 0, 0.0f);
     }
     if (playback.player != nullptr && !playback.is_cut) {
@@ -137,19 +139,20 @@ void apply_jumps(
         }
     }
     if (pose != nullptr) {
-        apply_joint_jumps(skeleton, joints, *pose);
+        const std::size_t posed = std::min(joints.size(), pose->joints.size());
+        apply_joint_jumps(skeleton, std::span(joints).first(posed), *pose);
     }
     if (morph != nullptr) {
         apply_weight_jumps(weights, *morph);
     }
 }
 
-/// Makes the poses of the last step the previous ones. Returns whether there was none.
-bool begin_step(const SkeletonData& skeleton, Pose& pose, MorphWeights* morph) {
-    const bool is_new = pose.joints.size() != skeleton.joints.size();
-    if (is_new) {
-        pose.joints.resize(skeleton.joints.size());
-        pose.previous.resize(skeleton.joints.size());
+/// Makes the poses of the last step the previous ones, of the first `joints`. Returns whether there
+/// was none.
+bool begin_step(const SkeletonData& skeleton, std::size_t joints, Pose& pose, MorphWeights* morph) {
+    const bool is_new = pose.joints.empty() || pose.joints.size() > skeleton.joints.size();
+    if (pose.joints.size() != joints) {
+        resize_pose(skeleton, joints, pose);
     }
     std::swap(pose.joints, pose.previous);
     pose.jumps.clear();
@@ -311,7 +314,7 @@ void step_character(
     const Modifiers& modifiers, Pose& pose, MorphWeights* morph) {
     thread_local LocalPose scratch;  // reused between characters
     const SkeletonData& skeleton = assets.skeletons[id.index];
-    const bool is_new = begin_step(skeleton, pose, morph);
+    const bool is_new = begin_step(skeleton, skeleton.joints.size(), pose, morph);
     const std::span<float> weights =
         morph != nullptr ? std::span<float>(morph->weights) : std::span<float>();
     if (const LocalPose* const performed =
@@ -392,27 +395,26 @@ class CrowdStepper {
             }
             Playback playback = all_.playback(i, cuts_, time_.step);
             Pose& pose = all_.poses[i];
-            if (!is_due(i, playback, pose.joints.size() == skeleton->joints.size())) {
+            const std::size_t joints = posed_joints(playback.crowd, *skeleton);
+            if (!is_due(i, playback, has_joints(pose, joints, *skeleton))) {
                 hold_character(pose, all_.morph(i));
                 continue;
             }
             if (!all_.crowd_states.empty()) {  // what it plays since its last pose
                 playback.step *= static_cast<float>(all_.crowd_states[i].interval);
             }
-            const CrowdClip* const clip = find_clip(i, playback, *skeleton);
+            const CrowdClip* const clip = find_clip(i, joints, playback, *skeleton);
             if (clip == nullptr) {
                 step_character(
                     assets_, all_.entities[i], all_.skeletons[i].skeleton, playback, modifiers_,
                     pose, all_.morph(i));
                 continue;
             }
-            if (!due.empty() && due.back().skeleton != skeleton) {
-                pose_together(due);
-            }
-            const bool is_new = begin_step(*skeleton, pose, all_.morph(i));
+            const bool is_new = begin_step(*skeleton, joints, pose, all_.morph(i));
             due.push_back({i, skeleton, clip, playback, is_new});
         }
-        pose_together(due);
+        pose_alike(due);
+        due.clear();
     }
 
   private:
@@ -424,13 +426,19 @@ class CrowdStepper {
         bool is_new;
     };
 
+    [[nodiscard]] static bool
+    has_joints(const Pose& pose, std::size_t joints, const SkeletonData& skeleton) {
+        return pose.joints.size() >= joints && pose.joints.size() <= skeleton.joints.size();
+    }
+
     [[nodiscard]] bool is_due(std::size_t i, const Playback& playback, bool has_pose) const {
         return !has_pose || playback.is_cut || all_.crowd_states.empty()
                || is_pose_due(all_.crowd_states[i], all_.entities[i], time_.frame);
     }
 
-    [[nodiscard]] const CrowdClip*
-    find_clip(std::size_t i, const Playback& playback, const SkeletonData& skeleton) const {
+    [[nodiscard]] const CrowdClip* find_clip(
+        std::size_t i, std::size_t joints, const Playback& playback,
+        const SkeletonData& skeleton) const {
         if (library_ == nullptr || playback.player == nullptr || !all_.crowds[i].compressed
             || modifiers_.has(all_.entities[i])) {
             return nullptr;
@@ -441,14 +449,30 @@ class CrowdStepper {
         const MorphWeights* const morph = all_.morph(i);
         const bool fits = entry != nullptr && entry->clip != nullptr && source != nullptr
                           && entry->clip->joints == skeleton.joints.size()
+                          && library_->find_rig(all_.skeletons[i].skeleton, joints) != nullptr
                           && has_weights(*source, morph != nullptr ? morph->weights.size() : 0);
         return fits ? entry->clip.get() : nullptr;
     }
 
-    void pose_together(std::vector<Due>& due) const {
-        if (due.empty()) {
-            return;
+    /// Poses those of one skeleton with as many joints together.
+    void pose_alike(std::vector<Due>& due) const {
+        const auto key = [this](const Due& each) {
+            return std::pair(
+                all_.skeletons[each.index].skeleton.index, all_.poses[each.index].joints.size());
+        };
+        std::stable_sort(
+            due.begin(), due.end(), [&key](const Due& a, const Due& b) { return key(a) < key(b); });
+        for (std::size_t begin = 0; begin < due.size();) {
+            std::size_t end = begin + 1;
+            while (end < due.size() && key(due[end]) == key(due[begin])) {
+                ++end;
+            }
+            pose_together(std::span(due).subspan(begin, end - begin));
+            begin = end;
         }
+    }
+
+    void pose_together(std::span<const Due> due) const {
         thread_local std::vector<CrowdCharacter> characters;
         characters.clear();
         for (const Due& each : due) {
@@ -465,7 +489,10 @@ class CrowdStepper {
                  .weight = share,
                  .joints = all_.poses[each.index].joints.data()});
         }
-        pose_crowd(*library_->rigs[all_.skeletons[due[0].index].skeleton.index], characters);
+        pose_crowd(
+            *library_->find_rig(
+                all_.skeletons[due[0].index].skeleton, all_.poses[due[0].index].joints.size()),
+            characters);
         for (const Due& each : due) {
             if (MorphWeights* const morph = all_.morph(each.index); morph != nullptr) {
                 const ClipPlayer& player = *each.playback.player;
@@ -475,7 +502,6 @@ class CrowdStepper {
                 assets_, *each.skeleton, each.playback, each.is_new, all_.poses[each.index],
                 all_.morph(each.index));
         }
-        due.clear();
     }
 
     const CharacterSpans& all_;

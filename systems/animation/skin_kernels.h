@@ -41,7 +41,8 @@ struct DualQuaternion {
     Quat dual = {0, 0, 0, 0};
 };
 
-/// Skinning matrices palette[i] = joints[skin.joints[i]] * joint_from_mesh[i].
+/// Skinning matrices palette[i] = joints[skin.joints[i]] * joint_from_mesh[i] of the first joints
+/// of the skin.
 void compute_skin_palette(
     const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette);
 

@@ -164,7 +164,7 @@ Vec3 moved_normal(
 
 void compute_skin_palette(
     const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette) {
-    LIMN_CHECK(palette.size() == skin.joints.size());
+    LIMN_CHECK(palette.size() <= skin.joints.size());
     for (std::size_t i = 0; i < palette.size(); ++i) {
         palette[i] = joints[skin.joints[i]] * skin.joint_from_mesh[i];
     }

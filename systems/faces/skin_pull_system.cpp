@@ -84,7 +84,7 @@ Mat4 skin_matrix_at(const MeshSource& source, const SkinPull& pull) {
     if (source.skin == nullptr || source.pose == nullptr || mesh.skin.empty()) {
         return Mat4(1.0f);
     }
-    std::vector<Affine> palette(source.skin->joints.size());
+    std::vector<Affine> palette(used_joints(mesh.skin));
     compute_skin_palette(*source.skin, source.pose->joints, palette);
     Mat4 mean(0.0f);
     for (std::uint32_t k = 0; k < 3; ++k) {

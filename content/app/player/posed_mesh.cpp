@@ -7,17 +7,7 @@
 #include "render/skinning/posed_bounds.h"
 #include "systems/animation/deform_mesh.h"
 
-#include <algorithm>
-
 namespace limn {
-namespace {
-
-std::uint32_t joint_count(const SkinWeights& skin) {
-    const auto last = std::max_element(skin.joints.begin(), skin.joints.end());
-    return last != skin.joints.end() ? *last + 1u : 0u;
-}
-
-}  // namespace
 
 std::vector<Vec3> posed_positions(const World& world, Entity entity) {
     const auto* assets = world.find_resource<Assets>();
@@ -32,7 +22,7 @@ std::vector<Vec3> posed_positions(const World& world, Entity entity) {
         return {};
     }
     const DeformSource source = find_deform_source(
-        world, *assets, entity, instance->mesh, joint_count(mesh.skin), *deformed);
+        world, *assets, entity, instance->mesh, used_joints(mesh.skin), *deformed);
     if (!source.fault.empty()) {
         return {};
     }

@@ -14,6 +14,7 @@
 #include "ecs/world.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/ik/joint_tree.h"
+#include "systems/animation/pose_levels.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
@@ -119,17 +120,18 @@ std::optional<CharacterView> view_character(const World& world, Entity entity) {
     const auto* const pose = world.find<Pose>(entity);
     const auto* const transform = world.find<WorldTransform>(entity);
     if (skeleton == nullptr || pose == nullptr || transform == nullptr
-        || skeleton->skeleton.index >= assets->skeletons.size()
-        || pose->joints.size() != assets->skeletons[skeleton->skeleton.index].joints.size()) {
+        || skeleton->skeleton.index >= assets->skeletons.size() || pose->joints.empty()) {
         return std::nullopt;
     }
     CharacterView view;
     view.entity = entity;
     view.skeleton = &assets->skeletons[skeleton->skeleton.index];
     view.world_from_character = transform->world;
-    view.joints = pose->joints;
+    Pose whole = *pose;  // of the joints that a level of less detail leaves out, too
+    resize_pose(*view.skeleton, view.skeleton->joints.size(), whole);
+    view.joints = std::move(whole.joints);
     const auto* const player = world.find<ClipPlayer>(entity);
-    view.clip = clip_of(world, entity, player, pose->joints.size());
+    view.clip = clip_of(world, entity, player, view.joints.size());
     if (player != nullptr) {
         view.time = player->time;
         view.speed = player->speed;

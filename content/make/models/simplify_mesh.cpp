@@ -2,6 +2,7 @@
 
 #include "content/bake/tangents.h"
 #include "content/make/models/keep_triangles.h"
+#include "content/make/models/merge_joints.h"
 
 #include <meshoptimizer.h>
 
@@ -121,6 +122,12 @@ MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets) {
     mesh.pieces.clear();
     const auto triangles = static_cast<std::size_t>(std::max(shape.triangles, 4));
     shape.merge ? merge_mesh(mesh, triangles) : simplify_mesh(mesh, triangles);
+    const auto skeleton = std::ranges::find(assets.skeletons, mesh.name, &SkeletonData::name);
+    const auto skin = std::ranges::find(assets.skins, mesh.name, &SkinData::name);
+    if (shape.joints > 0 && !mesh.skin.empty() && skeleton != assets.skeletons.end()
+        && skin != assets.skins.end()) {
+        merge_joints(mesh.skin, *skin, *skeleton, static_cast<std::size_t>(shape.joints));
+    }
     update_bounds(mesh);
     return mesh;
 }

@@ -20,6 +20,7 @@ struct SimplifiedShape {
     MeshId mesh;
     int triangles = 300;
     bool merge = false;
+    int joints = 0;
 };
 
 LIMN_FIELDS(SimplifiedShape) {
@@ -28,6 +29,11 @@ LIMN_FIELDS(SimplifiedShape) {
     LIMN_FIELD(
         merge, "lets surfaces join and details vanish: a few hundred triangles of anything, for "
                "what is far away");
+    LIMN_FIELD(
+        joints,
+        "its skin needs only as many of the first joints: the others, such as fingers, "
+        "follow their parents, and a crowd_pose leaves them out; 0 = all of them",
+        "", 0, 65535);
 }
 
 /// A simplified copy of another mesh of the level, as a control surface for it (surface_binding),

@@ -146,9 +146,7 @@ class HandBuilder {
         Vec3 back = {};
     };
 
-    [[nodiscard]] Vec3 bone(int finger, int k) const {
-        return frame_.joints[joint_index(SideJoint::Thumb1, 1) + 3 * finger + k];
-    }
+    [[nodiscard]] Vec3 bone(int finger, int k) const { return frame_.at(finger_joint(finger, k)); }
 
     /// On the axis of a finger, `at` from its first joint.
     [[nodiscard]] FingerPlace finger_place(int finger, float at) const {

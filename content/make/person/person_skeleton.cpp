@@ -20,13 +20,13 @@ constexpr float kCrown = 0.150f;  ///< above the origin of a head [m]
 
 constexpr std::array<const char*, kMiddleJoints> kMiddleNames = {
     "Hips", "Spine", "Chest", "UpperChest", "Neck", "Head", "LeftEye", "RightEye"};
-constexpr std::array<std::int16_t, kMiddleJoints> kMiddleParents = {-1, 0, 1, 2, 3, 4, 5, 5};
+constexpr std::array<std::int16_t, kTrunkJoints> kTrunkParents = {-1, 0, 1, 2, 3, 4};
 
 constexpr std::array<const char*, kSideJoints> kSideNames = {
-    "Shoulder", "UpperArm",   "UpperArmTwist", "Forearm", "ForearmTwist", "Hand",    "Thumb1",
-    "Thumb2",   "Thumb3",     "Index1",        "Index2",  "Index3",       "Middle1", "Middle2",
-    "Middle3",  "Ring1",      "Ring2",         "Ring3",   "Little1",      "Little2", "Little3",
-    "Thigh",    "ThighTwist", "Shin",          "Foot",    "Toes"};
+    "Shoulder", "UpperArm",      "Forearm",      "Thigh",      "Shin",    "Foot",    "Toes",
+    "Hand",     "UpperArmTwist", "ForearmTwist", "ThighTwist", "Thumb1",  "Thumb2",  "Thumb3",
+    "Index1",   "Index2",        "Index3",       "Middle1",    "Middle2", "Middle3", "Ring1",
+    "Ring2",    "Ring3",         "Little1",      "Little2",    "Little3"};
 
 /// Where the bones of index to little finger begin, from the wrist: along the hand, to the thumb,
 /// to the back of the hand; and how far they are spread toward the thumb [rad].
@@ -54,7 +54,7 @@ void place_fingers(PersonFrame& frame) {
     const LimbAxes& hand = frame.hand;
     const Vec3 wrist = frame.at(SideJoint::Hand);
     const auto put = [&](int finger, int bone, const Vec3& p) {
-        frame.joints[joint_index(SideJoint::Thumb1, 1) + 3 * finger + bone] = p;
+        frame.joints[joint_index(finger_joint(finger, bone), 1)] = p;
     };
     for (int finger = 1; finger <= 4; ++finger) {
         const Knuckle& knuckle = kKnuckles[finger - 1];
@@ -115,29 +115,49 @@ void place_leg(PersonFrame& frame) {
 
 SideJoint side_parent(std::size_t joint) {
     constexpr std::array<SideJoint, kSideJoints> kParents = {
-        SideJoint::Shoulder, SideJoint::Shoulder, SideJoint::UpperArm, SideJoint::UpperArm,
-        SideJoint::Forearm,  SideJoint::Forearm,  SideJoint::Hand,     SideJoint::Thumb1,
-        SideJoint::Thumb2,   SideJoint::Hand,     SideJoint::Index1,   SideJoint::Index2,
-        SideJoint::Hand,     SideJoint::Middle1,  SideJoint::Middle2,  SideJoint::Hand,
-        SideJoint::Ring1,    SideJoint::Ring2,    SideJoint::Hand,     SideJoint::Little1,
-        SideJoint::Little2,  SideJoint::Thigh,    SideJoint::Thigh,    SideJoint::Thigh,
-        SideJoint::Shin,     SideJoint::Foot};
+        SideJoint::Shoulder, SideJoint::Shoulder, SideJoint::UpperArm, SideJoint::Thigh,
+        SideJoint::Thigh,    SideJoint::Shin,     SideJoint::Foot,     SideJoint::Forearm,
+        SideJoint::UpperArm, SideJoint::Forearm,  SideJoint::Thigh,    SideJoint::Hand,
+        SideJoint::Thumb1,   SideJoint::Thumb2,   SideJoint::Hand,     SideJoint::Index1,
+        SideJoint::Index2,   SideJoint::Hand,     SideJoint::Middle1,  SideJoint::Middle2,
+        SideJoint::Hand,     SideJoint::Ring1,    SideJoint::Ring2,    SideJoint::Hand,
+        SideJoint::Little1,  SideJoint::Little2};
     return kParents[joint];
 }
 
-std::int32_t parent_of(std::size_t joint) {
-    if (joint < kMiddleJoints) {
-        return kMiddleParents[joint];
+/// A joint by its place in the order.
+struct JointPlace {
+    std::size_t own = 0;  ///< of its enumeration
+    int side = 0;         ///< +1 left, -1 right, 0 in the middle
+};
+
+JointPlace place_of(std::size_t joint) {
+    if (joint < kTrunkJoints) {
+        return {joint, 0};
     }
-    const int side = joint < kMiddleJoints + kSideJoints ? 1 : -1;
-    const std::size_t own = (joint - kMiddleJoints) % kSideJoints;
-    if (own == static_cast<std::size_t>(SideJoint::Shoulder)) {
+    const std::size_t pair = joint - kTrunkJoints;
+    return pair < 2 * kSideJoints ? JointPlace{pair / 2, pair % 2 == 0 ? 1 : -1}
+                                  : JointPlace{joint - 2 * kSideJoints, 0};
+}
+
+std::int32_t parent_of(const JointPlace& joint) {
+    if (joint.side == 0) {
+        return joint.own < kTrunkJoints ? kTrunkParents[joint.own] : joint_index(PersonJoint::Head);
+    }
+    if (joint.own == static_cast<std::size_t>(SideJoint::Shoulder)) {
         return joint_index(PersonJoint::UpperChest);
     }
-    if (own == static_cast<std::size_t>(SideJoint::Thigh)) {
+    if (joint.own == static_cast<std::size_t>(SideJoint::Thigh)) {
         return joint_index(PersonJoint::Hips);
     }
-    return joint_index(side_parent(own), side);
+    return joint_index(side_parent(joint.own), joint.side);
+}
+
+std::string name_of(const JointPlace& joint) {
+    if (joint.side == 0) {
+        return kMiddleNames[joint.own];
+    }
+    return std::string(joint.side > 0 ? "Left" : "Right") + kSideNames[joint.own];
 }
 
 /// Collects limits of joints; angles in degrees from the rest pose.
@@ -204,10 +224,7 @@ void add_limits_of_arm(FreedomList& limits, const PersonFrame& frame) {
     limits.add(SideJoint::Hand, -frame.hand.thumb, -65, 75);
     limits.add(SideJoint::Hand, frame.hand.back, -28, 20);
     for (int finger = 1; finger <= 4; ++finger) {
-        const auto first = static_cast<SideJoint>(static_cast<int>(SideJoint::Thumb1) + 3 * finger);
-        const auto bone = [&](int k) {
-            return static_cast<SideJoint>(static_cast<int>(first) + k);
-        };
+        const auto bone = [finger](int k) { return finger_joint(finger, k); };
         limits.add(bone(0), -frame.hand.thumb, -35, 80);
         limits.add(bone(0), frame.hand.back, -14, 14);
         limits.add(bone(1), -frame.hand.thumb, -18, 85);
@@ -269,8 +286,8 @@ PersonFrame measure_person(const PersonShape& shape) {
     place_arm(frame);
     place_leg(frame);
     for (std::size_t i = 0; i < kSideJoints; ++i) {
-        frame.joints[kMiddleJoints + kSideJoints + i] =
-            frame.joints[kMiddleJoints + i] * Vec3(-1, 1, 1);
+        const auto joint = static_cast<SideJoint>(i);
+        frame.joints[joint_index(joint, -1)] = frame.at(joint) * Vec3(-1, 1, 1);
     }
     return frame;
 }
@@ -278,17 +295,11 @@ PersonFrame measure_person(const PersonShape& shape) {
 SkeletonData make_person_skeleton(const PersonFrame& frame) {
     SkeletonData skeleton;
     for (std::size_t joint = 0; joint < kPersonJoints; ++joint) {
-        const std::int32_t parent = parent_of(joint);
+        const JointPlace place = place_of(joint);
+        const std::int32_t parent = parent_of(place);
         const Vec3 origin = parent < 0 ? Vec3(0) : frame.joints[parent];
-        std::string name;
-        if (joint < kMiddleJoints) {
-            name = kMiddleNames[joint];
-        } else {
-            name = joint < kMiddleJoints + kSideJoints ? "Left" : "Right";
-            name += kSideNames[(joint - kMiddleJoints) % kSideJoints];
-        }
         add_rigid_joint(
-            skeleton, std::move(name), parent, frame.scale * (frame.joints[joint] - origin));
+            skeleton, name_of(place), parent, frame.scale * (frame.joints[joint] - origin));
     }
     FreedomList limits(skeleton);
     add_limits_of_back(limits);

@@ -26,14 +26,19 @@ enum class PersonJoint : std::uint16_t {
 };
 inline constexpr std::size_t kMiddleJoints = 8;
 
-/// Of one side, counted from kMiddleJoints; the left ones come first.
+/// Of one side: limbs, then what is too small to be seen from far away.
 enum class SideJoint : std::uint16_t {
     Shoulder,
     UpperArm,
-    UpperArmTwist,
     Forearm,
-    ForearmTwist,
+    Thigh,
+    Shin,
+    Foot,
+    Toes,
     Hand,
+    UpperArmTwist,
+    ForearmTwist,
+    ThighTwist,
     Thumb1,
     Thumb2,
     Thumb3,
@@ -49,22 +54,26 @@ enum class SideJoint : std::uint16_t {
     Little1,
     Little2,
     Little3,
-    Thigh,
-    ThighTwist,
-    Shin,
-    Foot,
-    Toes,
 };
 inline constexpr std::size_t kSideJoints = 26;
 inline constexpr std::size_t kPersonJoints = kMiddleJoints + 2 * kSideJoints;
 
+// The order of the joints: trunk and head, both sides in turn, eyes. Each level of detail of the
+// skeleton is its first joints.
+inline constexpr std::size_t kTrunkJoints = 6;
+
 [[nodiscard]] constexpr std::uint16_t joint_index(PersonJoint joint) {
-    return static_cast<std::uint16_t>(joint);
+    const auto own = static_cast<std::size_t>(joint);
+    return static_cast<std::uint16_t>(own < kTrunkJoints ? own : own + 2 * kSideJoints);
 }
 /// `side`: +1 left, -1 right.
 [[nodiscard]] constexpr std::uint16_t joint_index(SideJoint joint, int side) {
     return static_cast<std::uint16_t>(
-        kMiddleJoints + static_cast<std::size_t>(joint) + (side > 0 ? 0 : kSideJoints));
+        kTrunkJoints + 2 * static_cast<std::size_t>(joint) + (side > 0 ? 0 : 1));
+}
+/// `finger` 0: thumb .. 4: little finger, `bone` 0 .. 2.
+[[nodiscard]] constexpr SideJoint finger_joint(int finger, int bone) {
+    return static_cast<SideJoint>(static_cast<int>(SideJoint::Thumb1) + 3 * finger + bone);
 }
 
 /// Unit axes of a limb: along it, to the side of the thumb, to the back of the hand.

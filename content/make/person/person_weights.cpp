@@ -129,9 +129,7 @@ JointWeights weigh_hand(const PersonFrame& frame, const BodyVertex& vertex) {
         return mixer.weights;
     }
     const std::array<float, 3> lengths = finger_lengths(vertex.finger);
-    const auto bone = [&](int k) {
-        return static_cast<SideJoint>(static_cast<int>(SideJoint::Thumb1) + 3 * vertex.finger + k);
-    };
+    const auto bone = [&](int k) { return finger_joint(vertex.finger, k); };
     const float at = vertex.along;
     const bool thumb = vertex.finger == 0;
     mixer.set(mixer.at(SideJoint::Hand), 1);
