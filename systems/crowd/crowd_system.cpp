@@ -45,11 +45,14 @@ struct CrowdGround {
 
 /// A walker of the world, and what update_crowd() writes.
 struct PlacedWalker {
+    Entity entity;
     const CrowdAgent* agent = nullptr;
     CrowdState* state = nullptr;
     Transform* transform = nullptr;
-    ClipPlayer* player = nullptr;
-    Vec2 facing{};
+    CrowdGoal* goal = nullptr;           ///< null: it has none
+    const MoveIntent* intent = nullptr;  ///< likewise
+    ClipPlayer* player = nullptr;        ///< likewise
+    bool is_sound = false;
 };
 
 CrowdGround place_ground(
@@ -202,7 +205,8 @@ void write_walker(
             find_floor(floor, placed.transform->position, placed.agent->climb).value_or(height),
             std::sqrt(speed2), step);
     }
-    const Vec2 toward = placed.facing != Vec2(0)         ? placed.facing
+    const Vec2 facing = placed.intent != nullptr ? ground_plane(placed.intent->facing) : Vec2(0);
+    const Vec2 toward = facing != Vec2(0)                ? facing
                         : speed2 > square(kHeadingSpeed) ? walker.velocity
                                                          : Vec2(0);
     placed.transform->rotation =
@@ -220,6 +224,41 @@ float shared_side(PassingSide side, std::uint64_t seed) {
                            ? (hash_combine(seed, name_hash("passing side")) & 1) != 0
                            : side == PassingSide::Right;
     return right ? 1.0f : -1.0f;
+}
+
+/// As it stands, without a goal.
+CrowdWalker read_walker(const PlacedWalker& placed, std::uint64_t seed) {
+    const CrowdAgent& agent = *placed.agent;
+    CrowdWalker walker;
+    walker.position = ground_plane(placed.transform->position);
+    walker.velocity = placed.state->velocity;
+    walker.radius = agent.radius;
+    walker.max_speed = agent.max_speed;
+    walker.horizon = agent.horizon;
+    walker.range = agent.neighbor_distance;
+    walker.priority = agent.priority;
+    walker.side = shared_side(agent.side, seed);
+    walker.detour = std::clamp(placed.state->detour, 0.0f, kMaxDetour);
+    walker.key = placed.entity.bits();
+    if (placed.goal == nullptr && placed.intent != nullptr) {
+        walker.wanted = ground_plane(placed.intent->velocity);
+    }
+    return walker;
+}
+
+void remove_unsound(std::vector<PlacedWalker>& placed, std::vector<CrowdWalker>& walkers) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        if (placed[i].is_sound) {
+            if (kept != i) {
+                placed[kept] = placed[i];
+                walkers[kept] = walkers[i];
+            }
+            ++kept;
+        }
+    }
+    placed.resize(kept);
+    walkers.resize(kept);
 }
 
 }  // namespace
@@ -242,34 +281,24 @@ void update_crowd(
     thread_local std::vector<PlacedWalker> placed_memory;  // reused between steps
     std::vector<PlacedWalker>& placed = placed_memory;
     placed.clear();
-    memory->walkers.clear();
     walkers.each([&](Entity entity, const CrowdAgent& agent, CrowdState& state,
                      Transform& transform, CrowdGoal* goal, const MoveIntent* intent,
                      ClipPlayer* player) {
-        CrowdWalker walker;
-        walker.position = ground_plane(transform.position);
-        walker.velocity = state.velocity;
-        walker.radius = agent.radius;
-        walker.max_speed = agent.max_speed;
-        walker.horizon = agent.horizon;
-        walker.range = agent.neighbor_distance;
-        walker.priority = agent.priority;
-        walker.side = shared_side(agent.side, seed->seed);
-        walker.detour = std::clamp(state.detour, 0.0f, kMaxDetour);
-        walker.key = entity.bits();
-        if (goal != nullptr) {
-            want_goal(ground, *memory, placements, agent, *goal, walker);
-        } else if (intent != nullptr) {
-            walker.wanted = ground_plane(intent->velocity);
-        }
-        walker.wanted = jittered_velocity(walker, seed->seed, time->frame);
-        if (is_sound_walker(walker)) {
-            memory->walkers.push_back(walker);
-            placed.push_back(
-                {&agent, &state, &transform, player,
-                 intent != nullptr ? ground_plane(intent->facing) : Vec2(0)});
+        placed.push_back({entity, &agent, &state, &transform, goal, intent, player});
+    });
+    memory->walkers.resize(placed.size());
+    parallel_for(placed.size(), kWalkerGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            CrowdWalker& walker = memory->walkers[i];
+            walker = read_walker(placed[i], seed->seed);
+            if (placed[i].goal != nullptr) {
+                want_goal(ground, *memory, placements, *placed[i].agent, *placed[i].goal, walker);
+            }
+            walker.wanted = jittered_velocity(walker, seed->seed, time->frame);
+            placed[i].is_sound = is_sound_walker(walker);
         }
     });
+    remove_unsound(placed, memory->walkers);
     step_crowd(memory->walkers, ground.barriers, time->step, memory->scratch);
     parallel_for(placed.size(), kWalkerGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
