@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <vector>
 
 namespace limn::bench {
 
@@ -39,6 +40,32 @@ race(Seconds seconds, int repeats, Runs&&... runs) {
             const double time = seconds() - begin;
             best[next] = std::min(best[next], time);
             ++next;
+        };
+        (measure(runs), ...);
+    }
+    return best;
+}
+
+/// The same, where other work of a frame has evicted all data from the caches before each run.
+template <typename Seconds, typename... Runs>
+[[nodiscard]] std::array<double, sizeof...(Runs)>
+race_from_memory(Seconds seconds, int repeats, Runs&&... runs) {
+    std::vector<char> other(std::size_t{96} << 20);
+    char next = 0;
+    const auto evict = [&] {
+        std::fill(other.begin(), other.end(), ++next);
+        asm volatile("" : : "g"(other.data()) : "memory");
+    };
+    std::array<double, sizeof...(Runs)> best;
+    best.fill(INFINITY);
+    for (int i = 0; i < std::max(repeats, kMinRepeats); ++i) {
+        std::size_t place = 0;
+        const auto measure = [&](auto&& run) {
+            evict();
+            const double begin = seconds();
+            run();
+            best[place] = std::min(best[place], seconds() - begin);
+            ++place;
         };
         (measure(runs), ...);
     }
