@@ -129,7 +129,7 @@ TEST_CASE("graph update: a bad edit is one line, and the old graph stays") {
     // New graphs need a reload.
     fox.write(with(
         R"("motion_graphs": {)", R"("motion_graphs": {"cat": {"states": [{"name": "one"}]}, )"));
-    CHECK(fox.update().ends_with("were added or removed: reload the level"));
+    CHECK(fox.update().ends_with(": \"cat\" was added: reload the level"));
 }
 
 TEST_CASE("graph update: of two saves before the next step, the second one counts") {

@@ -188,6 +188,23 @@ std::vector<LevelChange> find_first_sets(const World& world, const EventList& be
     return changes;
 }
 
+/// The first name that only one of both lists has.
+std::string
+describe_difference(const std::vector<std::string>& before, const std::vector<std::string>& now) {
+    const auto find_new = [](const auto& list, const auto& other) {
+        return std::ranges::find_if(list, [&](const std::string& name) {
+            return std::ranges::count(list, name) > std::ranges::count(other, name);
+        });
+    };
+    if (const auto added = find_new(now, before); added != now.end()) {
+        return fmt::format("\"{}\" was added", *added);
+    }
+    if (const auto removed = find_new(before, now); removed != before.end()) {
+        return fmt::format("\"{}\" was removed", *removed);
+    }
+    return "the order of assets differs";
+}
+
 }  // namespace
 
 bool same_value(const AnyComponent& a, const AnyComponent& b) {
@@ -237,13 +254,16 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     const std::string path = fields.files.empty() ? "" : fields.files.front();
     Level level = LIMN_TRY(load_level(path, {}, choice, made));
     LevelFields now = remember_fields(level, path);
-    bool same = now.components.size() == fields.components.size() && now.assets == fields.assets;
+    if (now.assets != fields.assets) {
+        return fail(
+            "{}: {}: reload the level", path, describe_difference(fields.assets, now.assets));
+    }
+    bool same = now.components.size() == fields.components.size();
     for (std::size_t i = 0; same && i < now.components.size(); ++i) {
         same = same_kinds(now.components[i], fields.components[i]);
     }
     if (!same) {
-        return fail(
-            "{}: entities, components or assets were added or removed: reload the level", path);
+        return fail("{}: entities or components were added or removed: reload the level", path);
     }
     if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
         return fail("{}: changes of glTF nodes differ: reload the level", path);
