@@ -1,4 +1,7 @@
 #include "content/app/player/player_camera.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
 #include "render/render_view.h"
 #include "tests/near.h"
 
@@ -23,6 +26,19 @@ void check_near(const Vec3& a, const Vec3& b, float tolerance = 1e-4f) {
 }
 
 }  // namespace
+
+TEST_CASE("player_camera: an event that switches cameras switches what is seen") {
+    World world;
+    const Entity first = world.create(Transform{}, WorldTransform{}, Camera{});
+    const Entity second = world.create(Transform{}, WorldTransform{}, Camera{.active = false});
+    CHECK(follow_active_camera(world, first) == first);
+    world.get<Camera>(second).active = true;
+    CHECK(follow_active_camera(world, first) == first);
+    world.get<Camera>(first).active = false;
+    CHECK(follow_active_camera(world, first) == second);
+    world.get<Camera>(second).active = false;
+    CHECK(follow_active_camera(world, second) == second);
+}
 
 TEST_CASE("player_camera: flying takes over exactly where the camera stood") {
     const Affine pose = look_at({3, 4, 5}, {0, 1, -2});

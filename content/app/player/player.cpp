@@ -102,6 +102,11 @@ void Player::simulate(float dt, const Input& input) {
             step_stage(*off_stage_);
         }
     }
+    const Entity camera = follow_active_camera(stage_->world, stage_->scene.camera);
+    if (camera != stage_->scene.camera) {  // an event switched it
+        stage_->scene.camera = camera;
+        camera_.mode = CameraMode::Level;
+    }
     follow_trial();
     cost_.simulate_ms = seconds_between(begin, Clock::now()) * 1e3;
 }

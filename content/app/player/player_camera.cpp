@@ -1,5 +1,6 @@
 #include "content/app/player/player_camera.h"
 
+#include "ecs/world.h"
 #include "render/render_view.h"
 #include "systems/fly_camera_system.h"
 #include "systems/orbit_camera_system.h"
@@ -49,6 +50,11 @@ const char* camera_mode_name(CameraMode mode) {
         return "orbit";
     }
     return "";
+}
+
+Entity follow_active_camera(const World& world, Entity current) {
+    const auto* const camera = world.find<Camera>(current);
+    return camera != nullptr && camera->active ? current : find_camera(world).value_or(current);
 }
 
 void start_fly(PlayerCamera& camera, const Affine& pose) {

@@ -10,6 +10,8 @@
 
 namespace limn {
 
+class World;
+
 // The user-controlled camera. It is not an entity: it moves while the simulation is paused and
 // never affects the level. C cycles through its three modes; each starts from the pose of the
 // previous one, so that the view jumps only when it returns to the level's camera. The motion
@@ -68,6 +70,9 @@ void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target
 /// Moves an orbiting camera and its aim across the image, so that what is at its focus follows the
 /// pointer: `motion` in pixels of an image of `height` pixels.
 void pan_orbit(PlayerCamera& camera, const Vec2& motion, float height);
+
+/// The level's camera to see by: `current` until an event has switched it off and another one on.
+[[nodiscard]] Entity follow_active_camera(const World& world, Entity current);
 
 /// Starts flying from `pose`, made upright.
 void start_fly(PlayerCamera& camera, const Affine& pose);

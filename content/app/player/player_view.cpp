@@ -2,7 +2,9 @@
 
 #include "content/app/player/pick.h"
 #include "content/app/player/player.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/framing.h"
+#include "ecs/components/motor.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
@@ -147,7 +149,11 @@ void Player::edit_furrows() {
 }
 
 void Player::toggle_skeleton() {
-    const Entity character = find_character(stage_->world, inspector_.selected());
+    Entity character = find_character(stage_->world, inspector_.selected());
+    if (character.is_null()) {
+        stage_->world.query<const Hero, With<Skeleton>>().each(
+            [&](Entity hero, const Hero&) { character = character.is_null() ? hero : character; });
+    }
     if (skeleton_.is_open()) {
         skeleton_.close();
     } else if (character.is_null()) {
