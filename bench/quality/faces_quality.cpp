@@ -34,8 +34,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Faces: what moves them and what measures their skin. Compares speech with sums in double
@@ -383,6 +385,35 @@ double rms_mm(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return 1000 * std::sqrt(sum / static_cast<double>(a.size()));
 }
 
+/// The largest angle [degrees] between the surface's planes on both sides of an edge.
+double largest_crease(const std::vector<std::uint32_t>& corners, const std::vector<Vec4>& patches) {
+    const auto next = [](std::size_t i) { return i % 3 == 2 ? i - 2 : i + 1; };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        edges[{corners[i], corners[next(i)]}] = i;
+    }
+    const auto plane = [&](std::size_t i, float share) {
+        Vec3 weights(0);
+        weights[static_cast<int>(i % 3)] = 1.0f - share;
+        weights[static_cast<int>(next(i) % 3)] = share;
+        const auto patch = std::span(patches).subspan(i / 3 * kPatchTexels, kPatchTexels);
+        const PatchPoint at = evaluate_patch(patch, weights.x, weights.y);
+        return glm::normalize(glm::cross(dvec3(at.by_u), dvec3(at.by_v)));
+    };
+    double largest = 0;
+    for (const auto& [ends, i] : edges) {
+        const auto other = edges.find({ends.second, ends.first});
+        for (int k = 0; k <= 16 && other != edges.end(); ++k) {
+            const float share = static_cast<float>(k) / 16;
+            const dvec3 a = plane(i, share);
+            const dvec3 b = plane(other->second, 1.0f - share);
+            largest = std::max(
+                largest, glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b))));
+        }
+    }
+    return largest;
+}
+
 Status measure_markers(QualityReport& report) {
     const MeshData head = make_head({});
     const MeshData markers = make_head({.part = HeadPartKind::Markers});
@@ -418,6 +449,10 @@ Status measure_markers(QualityReport& report) {
         report.at_most(
             fmt::format("markers: {}, of the RMS motion", expression.name), error / motion,
             expression.max_relative);
+        make_patches(shape_of(markers, expression), state.corners, patches);
+        report.at_most(
+            fmt::format("markers: {}, largest crease between patches", expression.name),
+            largest_crease(state.corners, patches), 0.1, "degrees");
     }
     return Done{};
 }

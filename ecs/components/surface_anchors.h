@@ -23,12 +23,16 @@ struct SurfaceAnchor {
     Vec3 offset = Vec3(0);   ///< [m]
     Vec3 normal = Vec3(0);   ///< of the mesh, as a covector of (u, v, distance)
     Vec3 tangent = Vec3(0);  ///< of the mesh, as a vector of (u, v, distance)
+    float share = 1.0f;      ///< of the motion that the vertex follows, in steps of 1 / 255
 };
 
-// A patch is 16 texels, xyz each: control points b300 b030 b003 b210 b120 b021 b012 b102 b201 b111,
-// where the exponents belong to u, v and w, then normals n200 n020 n002 n110 n011 n101.
+// A patch is 22 texels, xyz each: control points b300 b030 b003 b210 b120 b021 b012 b102 b201 b111,
+// where the exponents belong to u, v and w; offsets that bend it, two per edge: by the first and by
+// the second end of the edges from u to v, from v to w and from w to u; then normals n200 n020 n002
+// n110 n011 n101.
 inline constexpr std::size_t kPatchPoints = 10;
-inline constexpr std::size_t kPatchTexels = 16;
+inline constexpr std::size_t kPatchNormals = 16;
+inline constexpr std::size_t kPatchTexels = 22;
 
 /// The patches that move an instance of a bound mesh; without `anchors` it is not moved.
 struct SurfaceShape {

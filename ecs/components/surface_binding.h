@@ -57,8 +57,10 @@ LIMN_FIELDS(SurfaceBinding) {
         "", 0, 16);
     LIMN_FIELD(faces, "of faces: maximum number that influence a vertex", "", 1, 32);
     LIMN_FIELD(
-        reach, "of patches: vertices farther from the surface, or beside it, do not move", "m", 0,
-        1e4);
+        reach,
+        "of patches: distance from the surface at which vertices do not move; from half of it, and "
+        "beside the surface from its border on, they follow less and less",
+        "m", 0, 1e4);
     LIMN_FIELD(
         by_uvs,
         "of patches: a vertex is bound where the surface has its texture coordinates, so that each "

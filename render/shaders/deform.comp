@@ -143,10 +143,14 @@ Vertex follow_surface(Vertex v, int texel, int patches) {
     vec4 b = uintBitsToFloat(texelFetch(rest, texel + 1));
     vec4 c = uintBitsToFloat(texelFetch(rest, texel + 2));
     vec3 offset = vec3(uintBitsToFloat(a.w), b.xy);
-    PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
+    PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x & 0xffffffu), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
     mat3 axes = patch_axes(at, offset.z);
     vec3 normal = patch_normal(axes, vec3(b.zw, c.x));
-    return Vertex(point_on_patch(at, offset), unit_or(normal, v.normal), unit_or(axes * c.yzw, v.tangent));
+    float share = float(a.x >> 24) / 255.0;  // of the motion
+    return Vertex(
+        mix(v.position, point_on_patch(at, offset), share),
+        unit_or(mix(v.normal, unit_or(normal, v.normal), share), v.normal),
+        unit_or(mix(v.tangent, unit_or(axes * c.yzw, v.tangent), share), v.tangent));
 }
 
 Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control, uint patches) {

@@ -128,7 +128,11 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
 Texels anchor_texels(std::span<const SurfaceAnchor> anchors) {
     Texels texels;
     for (const SurfaceAnchor& at : anchors) {
-        texels.push_back({at.patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
+        // The share in the upper bits; that of kNoPatch, all ones, is not used.
+        const std::uint32_t share = static_cast<std::uint32_t>(std::lround(255.0f * at.share))
+                                    << 24;
+        const std::uint32_t patch = at.patch == kNoPatch ? kNoPatch : at.patch | share;
+        texels.push_back({patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
         texels.push_back(
             {bits_of(at.offset.y), bits_of(at.offset.z), bits_of(at.normal.x),
              bits_of(at.normal.y)});

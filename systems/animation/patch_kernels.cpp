@@ -3,6 +3,8 @@
 #include "ecs/base/check.h"
 #include "systems/animation/surface_patches.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -82,6 +84,53 @@ struct Lanes {
     HWY_ALIGN float z[kMaxLanes];
 };
 
+/// Position, and derivatives by u and v.
+struct Point {
+    V3 position, by_u, by_v;
+};
+
+/// Weight of an offset, 12 c^2 a^2 b / (a + b), and its derivatives by c, a and b.
+struct Weight {
+    V value, c, a, b;
+};
+
+HWY_INLINE Weight bend_weight(V c, V a, V b) {
+    const V one = hn::Set(d, 1.0f);
+    const V sum = hn::Add(a, b);
+    const auto at_corner = hn::Le(sum, hn::Set(d, 1e-12f));
+    const V ratio = hn::Clamp(hn::Div(a, hn::IfThenElse(at_corner, one, sum)), hn::Zero(d), one);
+    const V p = hn::IfThenElse(at_corner, hn::Set(d, 0.5f), ratio);
+    const V g = hn::Mul(hn::Mul(a, b), p);
+    const V c2 = hn::Mul(hn::Mul(hn::Set(d, 12.0f), c), c);
+    return {
+        hn::Mul(c2, g), hn::Mul(hn::Mul(hn::Set(d, 24.0f), c), g),
+        hn::Mul(c2, hn::Mul(hn::Mul(b, p), hn::Sub(hn::Set(d, 2.0f), p))),
+        hn::Mul(c2, hn::Mul(a, hn::Mul(p, p)))};
+}
+
+/// Adds the offset for the coordinates c, a and b, in this order.
+HWY_INLINE void add_bend(Point& at, const V3& offset, V value, V by_u, V by_v) {
+    at.position = add(at.position, scale(value, offset));
+    at.by_u = add(at.by_u, scale(by_u, offset));
+    at.by_v = add(at.by_v, scale(by_v, offset));
+}
+
+/// Adds the six offsets. Derivatives by u and v are those by the three coordinates, less that by w.
+HWY_INLINE void add_bends(const Vec4* bends, const Barycentric& on, Point& at) {
+    const Weight uv = bend_weight(on.u, on.v, on.w);
+    add_bend(at, all(bends[0]), uv.value, hn::Sub(uv.c, uv.b), hn::Sub(uv.a, uv.b));
+    const Weight vu = bend_weight(on.v, on.u, on.w);
+    add_bend(at, all(bends[1]), vu.value, hn::Sub(vu.a, vu.b), hn::Sub(vu.c, vu.b));
+    const Weight vw = bend_weight(on.v, on.w, on.u);
+    add_bend(at, all(bends[2]), vw.value, hn::Sub(vw.b, vw.a), hn::Sub(vw.c, vw.a));
+    const Weight wv = bend_weight(on.w, on.v, on.u);
+    add_bend(at, all(bends[3]), wv.value, hn::Sub(wv.b, wv.c), hn::Sub(wv.a, wv.c));
+    const Weight wu = bend_weight(on.w, on.u, on.v);
+    add_bend(at, all(bends[4]), wu.value, hn::Sub(wu.a, wu.c), hn::Sub(wu.b, wu.c));
+    const Weight uw = bend_weight(on.u, on.w, on.v);
+    add_bend(at, all(bends[5]), uw.value, hn::Sub(uw.c, uw.a), hn::Sub(uw.b, uw.a));
+}
+
 /// Like evaluate_patch, plus the anchor's offset. False if a vertex has no normal or no tangent,
 /// because markers coincide: the scalar version handles that.
 HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
@@ -98,19 +147,23 @@ HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
     const V3 r100 = mix(at, q200, q110, q101);
     const V3 r010 = mix(at, q110, q020, q011);
     const V3 r001 = mix(at, q101, q011, q002);
-    const V3 sum = mix(at, step(10, 13, 15), step(13, 11, 14), step(15, 14, 12));
+    const V three = hn::Set(d, 3.0f);
+    Point on = {
+        mix(at, r100, r010, r001), scale(three, subtract(r100, r001)),
+        scale(three, subtract(r010, r001))};
+    add_bends(patch + kPatchPoints, at, on);
+    const V3 sum = mix(at, step(16, 19, 21), step(19, 17, 20), step(21, 20, 18));
     const V length2 = dot(sum, sum);
     if (!hn::AllTrue(d, hn::Gt(length2, hn::Set(d, kMinNormal)))) {
         return false;
     }
     const V3 normal = scale(hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)), sum);
-    V3 p = mix(at, r100, r010, r001);
+    V3 p = on.position;
     const V x = hn::Load(d, lanes.x);
     const V y = hn::Load(d, lanes.y);
     // Most are perpendicularly above the surface.
     if (!hn::AllTrue(d, hn::And(hn::Eq(x, hn::Zero(d)), hn::Eq(y, hn::Zero(d))))) {
-        const V3 by_u = scale(hn::Set(d, 3.0f), subtract(r100, r001));
-        const V3 along = subtract(by_u, scale(dot(by_u, normal), normal));
+        const V3 along = subtract(on.by_u, scale(dot(on.by_u, normal), normal));
         const V along2 = dot(along, along);
         if (!hn::AllTrue(d, hn::Gt(along2, hn::Set(d, kMinTangent)))) {
             return false;
@@ -142,7 +195,8 @@ HWY_INLINE void move_vertices(
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::uint32_t v = vertices[i];
         if (moved) {
-            positions[v] = {lanes.x[i], lanes.y[i], lanes.z[i]};
+            positions[v] = glm::mix(
+                positions[v], Vec3(lanes.x[i], lanes.y[i], lanes.z[i]), shape.anchors[v].share);
         } else {
             follow_patches(
                 shape.anchors.subspan(v, 1), shape.patches, positions.subspan(v, 1), {}, {});

@@ -9,6 +9,7 @@
 #include "systems/animation/surface_faces.h"
 #include "systems/animation/surface_patches.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -68,6 +69,31 @@ std::vector<std::uint64_t> motion_kinds(const MeshData& mesh) {
         }
     }
     return kinds;
+}
+
+/// Says how many vertices the surface moves less than fully, and where they are.
+void note_beyond(
+    const MeshData& surface, const MeshData& bound, const std::vector<SurfaceAnchor>& anchors) {
+    Bounds beyond;
+    std::size_t less = 0;
+    std::size_t still = 0;
+    for (std::size_t v = 0; v < anchors.size(); ++v) {
+        if (anchors[v].patch == kNoPatch || anchors[v].share < 1.0f) {
+            grow(beyond, bound.positions[v]);
+            ++(anchors[v].patch == kNoPatch ? still : less);
+        }
+    }
+    if (less + still > 0) {
+        const auto rounded = [](const Vec3& p) {  // to millimeters
+            const Vec3 q = glm::round(1000.0f * p) / 1000.0f;
+            return format_text("({} {} {})", q.x, q.y, q.z);
+        };
+        log_debug(
+            "surface_binding of mesh {}: of {} vertices, {} beside the surface {} or far from it "
+            "follow less, {} do not move; these are between {} and {}",
+            bound.name, anchors.size(), less, surface.name, still, rounded(beyond.min),
+            rounded(beyond.max));
+    }
 }
 
 /// Binds one entity, for bind_surfaces.
@@ -158,6 +184,7 @@ class Binder {
         for (const SurfaceAnchor& anchor : anchors) {
             state.largest_offset = std::max(state.largest_offset, glm::length(anchor.offset));
         }
+        note_beyond(surface, bound, anchors);
         state.order = std::make_shared<const std::vector<std::uint32_t>>(order_by_patch(anchors));
         state.anchors = std::make_shared<const std::vector<SurfaceAnchor>>(std::move(anchors));
     }

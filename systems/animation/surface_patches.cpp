@@ -5,6 +5,7 @@
 #include "ecs/base/text.h"
 #include "ecs/base/triangle.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -28,6 +29,7 @@ constexpr int kSteps = 20;               ///< of Newton's method
 constexpr float kInside = 1e-4f;         ///< by which (u, v) may leave the triangle
 constexpr float kMinPatchShape = 1e-6f;  ///< area of a triangle over its longest edge squared
 constexpr float kMinPatchNormal = 1e-20f;  ///< squared length of a sum of normals that has none
+constexpr float kMinCorner = 1e-12f;       ///< 1 - weight of a corner, at that corner
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -120,10 +122,28 @@ class PatchBinder {
         const auto in_space = [&](std::size_t i) { return corner(i); };
         const Faces near = nearest_faces(point, kCandidates, in_space);
         const Faces facing = facing_along(near, normal);
-        SurfaceAnchor anchor;
-        const bool found = find_inside(point, facing, anchor) || find_beside(point, facing, anchor)
-                           || find_inside(point, near, anchor) || find_beside(point, near, anchor);
-        return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
+        for (const bool at_border : {false, true}) {
+            SurfaceAnchor chosen;
+            for (const Faces& faces : {facing, near}) {
+                SurfaceAnchor anchor;
+                if ((!at_border && find_inside(point, faces, anchor))
+                    || find_beside(point, faces, at_border, anchor)) {
+                    const float clearly = kFacing * size_of(anchor.patch);
+                    if (chosen.patch == kNoPatch
+                        || glm::length(chosen.offset) > glm::length(anchor.offset) + clearly) {
+                        chosen = anchor;
+                    }
+                }
+            }
+            if (chosen.patch != kNoPatch) {
+                chosen.share = share_of(chosen.offset, at_border);
+                chosen = finished(chosen, normal, tangent);
+                if (chosen.patch != kNoPatch) {
+                    return chosen;
+                }
+            }
+        }
+        return {};
     }
 
     /// `at`: of the point in the chart.
@@ -137,25 +157,45 @@ class PatchBinder {
         }
         if (!near.empty() && near[0].first > kOnChart) {
             // Points beyond the border are bound where the surface covers them closely.
-            const bool covered = (anchor.patch != kNoPatch || find_beside(point, {near[0]}, anchor))
-                                 && glm::length(anchor.offset) < kCloseTo * size_of(anchor.patch);
+            const bool covered =
+                (anchor.patch != kNoPatch || find_beside(point, {near[0]}, false, anchor))
+                && glm::length(anchor.offset) < kCloseTo * size_of(anchor.patch);
             return covered ? finished(anchor, normal, tangent) : SurfaceAnchor{};
         }
-        const bool found = anchor.patch != kNoPatch || find_beside(point, {near[0]}, anchor);
+        const bool found = anchor.patch != kNoPatch || find_beside(point, {near[0]}, false, anchor);
         return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
     }
 
   private:
     static constexpr float kOnChart = 1e-5f;
+    static constexpr float kFacing =
+        0.25f;  // of the size of a patch: one that faces away is nearer
     static constexpr float kCloseTo = 0.25f;  // of the size of a patch
 
     /// Faces, with the distances of their flat triangles.
     using Faces = std::vector<std::pair<float, std::uint32_t>>;
 
+    /// The share of the motion at an offset: all within half the largest distance, none at it;
+    /// beside the surface it fades out from the border.
+    [[nodiscard]] float share_of(const Vec3& offset, bool at_border) const {
+        if (!(max_distance_ > 0.0f)) {
+            return 1.0f;
+        }
+        float share = 1.0f - smooth(2.0f * glm::length(offset) / max_distance_ - 1.0f);
+        if (at_border) {
+            share *= 1.0f - smooth(std::hypot(offset.x, offset.y) / max_distance_);
+        }
+        return std::round(255.0f * share) / 255.0f;
+    }
+    static float smooth(float t) {
+        const float s = std::clamp(t, 0.0f, 1.0f);
+        return s * s * (3.0f - 2.0f * s);
+    }
+
     /// Adds normal and tangent, or returns an unbound anchor.
     [[nodiscard]] SurfaceAnchor
     finished(SurfaceAnchor anchor, const Vec3& normal, const Vec3& tangent) const {
-        if (glm::length(anchor.offset) > max_distance_) {
+        if (glm::length(anchor.offset) > max_distance_ || !(anchor.share > 0.0f)) {
             return {};
         }
         const PatchPoint at = evaluate_patch(patch(anchor.patch), anchor.u, anchor.v);
@@ -241,9 +281,10 @@ class PatchBinder {
         return anchor.patch != kNoPatch;
     }
 
-    /// Above an edge that is not at the border of the surface: the nearest anchor, and an offset
-    /// that is not only along the normal.
-    bool find_beside(const Vec3& p, const Faces& faces, SurfaceAnchor& anchor) const {
+    /// Above an edge: the nearest anchor, and an offset that is not only along the normal. False if
+    /// that is at the border of the surface, unless `at_border`.
+    bool
+    find_beside(const Vec3& p, const Faces& faces, bool at_border, SurfaceAnchor& anchor) const {
         anchor = {};
         float nearest = INFINITY;
         bool is_border = false;
@@ -265,7 +306,7 @@ class PatchBinder {
                             || (borders_[3 * f + 2] && clamped.y <= kInside);
             }
         }
-        if (is_border) {
+        if (is_border && !at_border) {
             anchor = {};
         }
         return anchor.patch != kNoPatch;
@@ -284,6 +325,44 @@ Vec3 edge_point(const Vec3& a, const Vec3& b, const Vec3& normal_a) {
     return (2.0f * a + b - glm::dot(b - a, normal_a) * normal_a) / 3.0f;
 }
 
+/// What bends a cubic patch so that it meets the tangent planes of the boundary from p[0] to p[1],
+/// at either end: the inner points of a Gregory patch less those of the cubic. The direction across
+/// the boundary is lambda W + mu A there, where W is the tangent of the boundary, A a quadratic
+/// field that depends on the boundary and its normals alone, and lambda and mu are linear.
+/// `edge`: inner control points of the boundary, from p[0]; `near`: of the two other boundaries, by
+/// p[0] and by p[1]; `n`: normals at p[0] and p[1].
+std::array<Vec3, 2> bend_to_edge(
+    const std::array<Vec3, 2>& p, const std::array<Vec3, 2>& edge, const std::array<Vec3, 2>& near,
+    const std::array<Vec3, 2>& n, const Vec3& inner) {
+    const std::array<Vec3, 3> w = {edge[0] - p[0], edge[1] - edge[0], p[1] - edge[1]};
+    const Vec3 first = normalize_or(glm::cross(n[0], w[0]), any_perpendicular(n[0]));
+    const Vec3 last = normalize_or(glm::cross(n[1], w[2]), any_perpendicular(n[1]));
+    const std::array<Vec3, 3> a = {first, normalize_or(first + last, first), last};
+    // Across the boundary at its ends, of the patch raised to degree four.
+    const Vec3 d0 = (p[0] + 3.0f * near[0]) / 4.0f - (5.0f * p[0] + 3.0f * edge[0]) / 8.0f;
+    const Vec3 d1 = (p[1] + 3.0f * near[1]) / 4.0f - (5.0f * p[1] + 3.0f * edge[1]) / 8.0f;
+    const auto share = [](const Vec3& d, const Vec3& along) {
+        const float length2 = glm::dot(along, along);
+        return length2 > 0.0f ? glm::dot(d, along) / length2 : 0.0f;
+    };
+    const std::array<float, 2> lambda = {share(d0, w[0]), share(d1, w[2])};
+    const std::array<float, 2> mu = {glm::dot(d0, a[0]), glm::dot(d1, a[2])};
+    const std::array<Vec3, 3> raised = {
+        (p[0] + 3.0f * edge[0]) / 4.0f, (edge[0] + edge[1]) / 2.0f, (3.0f * edge[1] + p[1]) / 4.0f};
+    const auto product = [](float l, const Vec3& x, float m, const Vec3& y) {
+        return (l * x + m * y) / 3.0f;
+    };
+    const Vec3 bend0 = (raised[0] + raised[1]) / 2.0f
+                       + product(2.0f * lambda[0], w[1], lambda[1], w[0])
+                       + product(2.0f * mu[0], a[1], mu[1], a[0]);
+    const Vec3 bend1 = (raised[1] + raised[2]) / 2.0f
+                       + product(lambda[0], w[2], 2.0f * lambda[1], w[1])
+                       + product(mu[0], a[2], 2.0f * mu[1], a[1]);
+    return {
+        bend0 - (2.0f * inner + edge[0] + near[0]) / 4.0f,
+        bend1 - (2.0f * inner + edge[1] + near[1]) / 4.0f};
+}
+
 /// Normal at the midpoint of an edge.
 Vec3 edge_normal(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
     const Vec3 along = b - a;
@@ -291,6 +370,33 @@ Vec3 edge_normal(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3&
     const Vec3 sum = normal_a + normal_b;
     const float scale = length2 > 0.0f ? 2.0f * glm::dot(along, sum) / length2 : 0.0f;
     return normalize_or(sum - scale * along, normal_a);
+}
+
+/// Adds the offsets, each 12 c^2 a^2 b / (a + b) times, where c + a + b = 1: in an edge, b = 0,
+/// that has no value and the slope of a quartic by b. Derivatives by u and v are those by the three
+/// coordinates, less that by w.
+void add_bends(std::span<const Vec4> patch, const Vec3& barycentric, PatchPoint& at) {
+    for (int edge = 0; edge < 3; ++edge) {
+        for (int end = 0; end < 2; ++end) {
+            const int corner = (edge + end) % 3;
+            const int other = (edge + 1 - end) % 3;
+            const int inward = (edge + 2) % 3;
+            const float c = barycentric[corner];
+            const float a = barycentric[other];
+            const float b = barycentric[inward];
+            // Outside of the triangle the share does not grow.
+            const float share = a + b > kMinCorner ? std::clamp(a / (a + b), 0.0f, 1.0f) : 0.5f;
+            Vec3 by;
+            by[corner] = 24.0f * c * a * b * share;
+            by[other] = 12.0f * c * c * b * share * (2.0f - share);
+            by[inward] = 12.0f * c * c * a * share * share;
+            const Vec3 offset =
+                Vec3(patch[kPatchPoints + static_cast<std::size_t>(2 * edge + end)]);
+            at.position += 12.0f * c * c * a * b * share * offset;
+            at.by_u += (by[0] - by[2]) * offset;
+            at.by_v += (by[1] - by[2]) * offset;
+        }
+    }
 }
 
 }  // namespace
@@ -368,23 +474,18 @@ void make_patches(
             edge_point(p[2], p[0], n[2]), edge_point(p[0], p[2], n[0])};
         const Vec3 mean = (edge[0] + edge[1] + edge[2] + edge[3] + edge[4] + edge[5]) / 6.0f;
         const Vec3 inner = mean + 0.5f * (mean - (p[0] + p[1] + p[2]) / 3.0f);
-        const std::array<Vec3, kPatchTexels> all = {
-            p[0],
-            p[1],
-            p[2],
-            edge[0],
-            edge[1],
-            edge[2],
-            edge[3],
-            edge[4],
-            edge[5],
-            inner,
-            n[0],
-            n[1],
-            n[2],
-            edge_normal(p[0], p[1], n[0], n[1]),
-            edge_normal(p[1], p[2], n[1], n[2]),
-            edge_normal(p[2], p[0], n[2], n[0])};
+        std::array<Vec3, kPatchTexels> all = {p[0],    p[1],    p[2],    edge[0], edge[1],
+                                              edge[2], edge[3], edge[4], edge[5], inner};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            const std::array<Vec3, 2> bends = bend_to_edge(
+                {p[k], p[next]}, {edge[2 * k], edge[2 * k + 1]},
+                {edge[(2 * k + 5) % 6], edge[2 * next]}, {n[k], n[next]}, inner);
+            all[kPatchPoints + 2 * k] = bends[0];
+            all[kPatchPoints + 2 * k + 1] = bends[1];
+            all[kPatchNormals + k] = n[k];
+            all[kPatchNormals + 3 + k] = edge_normal(p[k], p[next], n[k], n[next]);
+        }
         for (std::size_t i = 0; i < kPatchTexels; ++i) {
             patches[f * kPatchTexels + i] = Vec4(all[i], 0);
         }
@@ -408,16 +509,18 @@ PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v) {
     const Vec3 r100 = mix({q200, q110, q101});
     const Vec3 r010 = mix({q110, q020, q011});
     const Vec3 r001 = mix({q101, q011, q002});
-    const Vec3 m100 = mix(step(10, 13, 15));
-    const Vec3 m010 = mix(step(13, 11, 14));
-    const Vec3 m001 = mix(step(15, 14, 12));
-    const Vec3 sum = mix({m100, m010, m001});
-    const float length2 = glm::dot(sum, sum);
 
     PatchPoint at{};
     at.position = mix({r100, r010, r001});
     at.by_u = 3.0f * (r100 - r001);
     at.by_v = 3.0f * (r010 - r001);
+    add_bends(patch, {u, v, w}, at);
+
+    const Vec3 m100 = mix(step(16, 19, 21));
+    const Vec3 m010 = mix(step(19, 17, 20));
+    const Vec3 m001 = mix(step(21, 20, 18));
+    const Vec3 sum = mix({m100, m010, m001});
+    const float length2 = glm::dot(sum, sum);
     if (!(length2 > kMinPatchNormal)) {
         at.normal = normalize_or(glm::cross(at.by_u, at.by_v), Vec3(0, 0, 1));
         return at;
@@ -462,7 +565,7 @@ void follow_patches(
         }
         const PatchPoint at = evaluate_patch(
             patches.subspan(anchor.patch * kPatchTexels, kPatchTexels), anchor.u, anchor.v);
-        positions[i] = anchored_point(at, anchor.offset);
+        positions[i] = glm::mix(positions[i], anchored_point(at, anchor.offset), anchor.share);
         if (normals.empty()) {
             continue;
         }
@@ -472,8 +575,11 @@ void follow_patches(
             glm::cross(axes[1], axes[2]), glm::cross(axes[2], axes[0]),
             glm::cross(axes[0], axes[1]));
         const float side = glm::dot(axes[0], cofactors[0]) < 0.0f ? -1.0f : 1.0f;
-        normals[i] = normalize_or(side * (cofactors * anchor.normal), normals[i]);
-        tangents[i] = Vec4(normalize_or(axes * anchor.tangent, Vec3(tangents[i])), tangents[i].w);
+        const auto turn = [&](const Vec3& from, const Vec3& to) {
+            return normalize_or(glm::mix(from, normalize_or(to, from), anchor.share), from);
+        };
+        normals[i] = turn(normals[i], side * (cofactors * anchor.normal));
+        tangents[i] = Vec4(turn(Vec3(tangents[i]), axes * anchor.tangent), tangents[i].w);
     }
 }
 

@@ -12,10 +12,16 @@ namespace limn {
 
 // Deformation by a smooth surface through few markers (face.bids-*): J. Edge et al.,
 // "Bezier-Triangle Induced Deformation", 2004. The markers are vertices of a triangle mesh; each
-// triangle becomes a cubic Bezier patch with a quadratic field of normals, the PN triangles of A.
-// Vlachos et al., "Curved PN Triangles", 2001: positions are continuous across edges, and so are
-// these normals, though they are not quite perpendicular to the surface. A vertex is bound once to
-// a point of the surface at rest and a distance along the normal there,
+// triangle becomes a patch: the cubic of A. Vlachos et al., "Curved PN Triangles", 2001, whose
+// edges meet but crease, plus six offsets that bend it into the tangent planes that both sides of
+// an edge share, D. J. Walton and D. S. Meek, "A triangular G1 patch from boundary curves", 1996:
+//
+//     B(u, v) = sum 3!/(i!j!k!) u^i v^j w^k b_ijk + sum 12 c^2 a^2 b / (a + b) x_ca,
+//
+// for the six pairs (c, a) of the coordinates and b, the third. The surface is smooth (G1). Beside
+// it there is a quadratic field of unit normals, continuous across edges, which does not fold where
+// markers crowd, as the surface's own normals may. A vertex is bound once to a point of the surface
+// at rest and a distance along the normal there,
 //
 //     p = B(u, v) + d n(u, v),
 //
@@ -59,12 +65,13 @@ struct PatchChart {
     std::span<const Vec2> corners;  ///< one per corner of the faces
 };
 
-/// Positions of the points on the surface. A point with no patch within `max_distance` [m] below it
-/// is not bound: patch = kNoPatch. With a chart, a point is carried by the nearest patch there that
-/// is below it, or else by the nearest one; points beyond all faces of the chart, such as a torso
-/// below the surface of a head, are bound only within a quarter of a patch. Without a chart, a
-/// point is carried by the nearest patches in space that do not face away from its normal. Takes
-/// O(points * patches) time.
+/// Positions of the points on the surface. With a chart, a point is carried by the nearest patch
+/// there that is below it, or else by the nearest one; points beyond all faces of the chart, such
+/// as a torso below the surface of a head, are bound only within a quarter of a patch. Without a
+/// chart, a point is carried by the nearest patches in space that do not face away from its normal,
+/// or else by the nearest border, and follows less the farther it is: all the motion within half of
+/// `max_distance` [m] of the surface, fading out up to it, and from the border on. A point that is
+/// farther is not bound: patch = kNoPatch. Takes O(points * patches) time.
 [[nodiscard]] std::vector<SurfaceAnchor> bind_to_patches(
     std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,

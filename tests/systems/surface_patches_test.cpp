@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn::surface_patches_test {
@@ -116,14 +118,17 @@ Vec3 bend(const Vec3& p) {
 }  // namespace
 
 TEST_CASE(
-    "patches: over an octant the patch has the control points and radii of a PN triangle"
+    "patches: over an octant the patch has the control points of a PN triangle, and its edges"
     * technique("face.bids-surface")) {
     const Surface sphere = make_octahedron();
     const std::span<const Vec4> octant = sphere.patch(0);
     CHECK(glm::distance(Vec3(octant[3]), Vec3(1, 1.0f / 3, 0)) < 1e-6f);
     CHECK(glm::distance(Vec3(octant[9]), Vec3(0.5f)) < 1e-6f);
     const PatchPoint center = evaluate_patch(octant, 1.0f / 3, 1.0f / 3);
-    CHECK(glm::length(center.position) == near(0.769800));
+    // By hand: the points of a quartic with the inner ones (1, 7, 7) / 24 and so on, 38 / 81 each;
+    // that of the PN triangle alone is 0.769800.
+    CHECK(glm::length(center.position) == near(38 * std::sqrt(3.0) / 81));
+    CHECK(glm::distance(Vec3(octant[10]), Vec3(0.25f, 0, -1.0f / 12)) < 1e-6f);
     CHECK(glm::length(evaluate_patch(octant, 0.5f, 0.5f).position) == near(0.883883));
     CHECK(glm::distance(center.normal, glm::normalize(Vec3(1))) < 1e-6f);
 }
@@ -132,6 +137,13 @@ TEST_CASE(
     "patches: the surface passes through its markers, with their normals"
     * technique("face.bids-surface")) {
     const Surface surface = make_bumpy();
+    std::vector<Vec3> normals(surface.positions.size(), Vec3(0));
+    for (std::size_t i = 0; i < surface.corners.size(); ++i) {
+        const auto corner = [&](std::size_t k) {
+            return surface.positions[surface.corners[i / 3 * 3 + k]];
+        };
+        normals[surface.corners[i]] += glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    }
     for (std::size_t f = 0; f < surface.faces(); ++f) {
         const std::array<Vec2, 3> at = {Vec2(1, 0), Vec2(0, 1), Vec2(0, 0)};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -140,7 +152,9 @@ TEST_CASE(
                 glm::distance(corner.position, surface.positions[surface.corners[3 * f + k]])
                 < 1e-6f);
             CHECK(glm::length(corner.normal) == near(1));
-            CHECK(glm::distance(corner.normal, Vec3(surface.patch(f)[10 + k])) < 1e-6f);
+            CHECK(
+                glm::distance(corner.normal, glm::normalize(normals[surface.corners[3 * f + k]]))
+                < 1e-5f);
         }
     }
 }
@@ -160,37 +174,91 @@ TEST_CASE("patches: markers in a plane make a plane" * technique("face.bids-surf
     }
 }
 
+/// Calls `visit` with the points of both patches at places along every edge inside.
+std::size_t visit_edges(const Surface& surface, const auto& visit) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first;
+    for (std::size_t i = 0; i < surface.corners.size(); ++i) {
+        first[{surface.corners[i], surface.corners[i % 3 == 2 ? i - 2 : i + 1]}] = i;
+    }
+    std::size_t edges = 0;
+    for (const auto& [ends, i] : first) {
+        const auto other = first.find({ends.second, ends.first});
+        if (ends.first > ends.second || other == first.end()) {
+            continue;
+        }
+        ++edges;
+        for (int k = 0; k <= 32; ++k) {
+            const float t = static_cast<float>(k) / 32.0f;
+            const auto at = [&](std::size_t corner, float share) {
+                Vec3 weights(0);
+                weights[static_cast<int>(corner % 3)] = 1.0f - share;
+                weights[static_cast<int>((corner + 1) % 3)] = share;
+                return evaluate_patch(surface.patch(corner / 3), weights.x, weights.y);
+            };
+            visit(at(i, t), at(other->second, 1.0f - t));
+        }
+    }
+    return edges;
+}
+
+/// Angle [degrees] between the planes of the derivatives by u and v.
+float crease_deg(const PatchPoint& a, const PatchPoint& b) {
+    const Vec3 n = glm::normalize(glm::cross(a.by_u, a.by_v));
+    const Vec3 m = glm::normalize(glm::cross(b.by_u, b.by_v));
+    return glm::degrees(std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m)));
+}
+
+/// The sheet with vertices at random, so that its triangles are slim and of all sizes.
+Surface make_uneven(std::uint32_t seed, float height) {
+    Surface surface = make_bumpy(7);
+    Random random(seed, 3, 3, 3);
+    for (Vec3& p : surface.positions) {
+        p += 0.16f * Vec3(random.uniform() - 0.5f, 0, random.uniform() - 0.5f);
+        p.y = height * p.y + 0.05f * random.uniform();
+    }
+    surface.update();
+    return surface;
+}
+
 TEST_CASE(
     "patches: neighbors agree along their edge, in positions and normals"
     * technique("face.bids-surface")) {
-    const Surface surface = make_bumpy();
-    std::size_t shared = 0;
-    for (std::size_t f = 0; f < surface.faces(); ++f) {
-        for (std::size_t g = 0; g < surface.faces(); ++g) {
-            for (std::size_t i = 0; i < 9; ++i) {
-                const std::size_t a = i / 3;
-                const std::size_t b = i % 3;
-                if (f == g || surface.corners[3 * f + a] != surface.corners[3 * g + (b + 1) % 3]
-                    || surface.corners[3 * f + (a + 1) % 3] != surface.corners[3 * g + b]) {
-                    continue;
-                }
-                ++shared;
-                for (float t = 0.0f; t <= 1.0f; t += 0.125f) {
-                    Vec3 on_f(0);
-                    on_f[static_cast<int>(a)] = 1 - t;
-                    on_f[static_cast<int>((a + 1) % 3)] = t;
-                    Vec3 on_g(0);
-                    on_g[static_cast<int>(b)] = t;
-                    on_g[static_cast<int>((b + 1) % 3)] = 1 - t;
-                    const PatchPoint p = evaluate_patch(surface.patch(f), on_f.x, on_f.y);
-                    const PatchPoint q = evaluate_patch(surface.patch(g), on_g.x, on_g.y);
-                    CHECK(glm::distance(p.position, q.position) < 1e-6f);
-                    CHECK(glm::distance(p.normal, q.normal) < 1e-6f);
-                }
-            }
-        }
+    const std::size_t edges =
+        visit_edges(make_bumpy(), [](const PatchPoint& a, const PatchPoint& b) {
+            CHECK(glm::distance(a.position, b.position) < 1e-6f);
+            CHECK(glm::distance(a.normal, b.normal) < 1e-6f);
+        });
+    CHECK(edges == 65);
+}
+
+TEST_CASE(
+    "patches: the surface has no creases: tangent planes on both sides of an edge are the same"
+    * technique("face.bids-surface")) {
+    std::vector<Surface> surfaces = {make_bumpy(), make_octahedron()};
+    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+        surfaces.push_back(make_uneven(seed, 1 + 0.5f * static_cast<float>(seed)));
     }
-    CHECK(shared == 2 * 65);  // each edge inside, from both sides
+    surfaces.push_back(map_surface(make_uneven(9, 1), bend));
+    surfaces.push_back(map_surface(make_uneven(5, 1), [](const Vec3& p) { return 0.05f * p; }));
+    for (Surface& surface : surfaces) {
+        float largest = 0.0f;
+        visit_edges(surface, [&](const PatchPoint& a, const PatchPoint& b) {
+            largest = std::max(largest, crease_deg(a, b));
+        });
+        CHECK(largest <= 0.1f);
+    }
+    // What bends the patches is needed: without it the PN triangles crease.
+    float sum = 0.0f;
+    float count = 0.0f;
+    Surface cubic = surfaces[5];
+    for (std::size_t i = 0; i < cubic.patches.size(); ++i) {
+        cubic.patches[i] *= i % kPatchTexels < kPatchPoints ? 1.0f : 0.0f;
+    }
+    visit_edges(cubic, [&](const PatchPoint& a, const PatchPoint& b) {
+        sum += crease_deg(a, b);
+        ++count;
+    });
+    CHECK(sum / count > 4.0f);
 }
 
 TEST_CASE(
@@ -392,6 +460,88 @@ TEST_CASE(
     CHECK(moved.positions[0] == skin.positions[0]);
     CHECK(moved.normals[2] == skin.normals[2]);
     CHECK(moved.positions[1] != skin.positions[1]);
+}
+
+TEST_CASE(
+    "patches: beside the surface the motion fades out, without a jump"
+    * technique("face.bids-project, face.mocap-drive")) {
+    const Surface surface = make_bumpy();
+    const float reach = 0.4f;
+    Skin skin;
+    for (int i = 0; i <= 400; ++i) {  // outward across the border, at x = 1
+        skin.positions.emplace_back(0.8f + 0.002f * static_cast<float>(i), 0.1f, 0.13f);
+    }
+    skin.bind(surface, reach);
+    const Skin moved =
+        skin.follow(map_surface(surface, [](const Vec3& p) { return p + Vec3(0, 0.3f, 0); }));
+    for (std::size_t i = 0; i < skin.positions.size(); ++i) {
+        const float x = skin.positions[i].x;
+        const float rise = moved.positions[i].y - skin.positions[i].y;
+        const float last = i > 0 ? moved.positions[i - 1].y - skin.positions[i - 1].y : 0.3f;
+        CHECK(rise <= last + 1e-6f);
+        CHECK(last - rise < 0.01f);  // 4 mm where the slope of the fall-off is greatest
+        CHECK(rise == (x < 0.95f ? near(0.3).epsilon(1e-4) : x > 1.41f ? near(0) : near(rise)));
+        CHECK((rise == 0.0f) == (skin.anchors[i].patch == kNoPatch));
+    }
+    const float halfway = moved.positions[200].y - skin.positions[200].y;  // x = 1.2
+    CHECK(halfway > 0.1f);
+    CHECK(halfway < 0.2f);
+}
+
+/// Largest length of an edge of a ball, relative to that at rest, when the lowest of eight markers
+/// on its front moves down by a fifth of the radius.
+float largest_stretch_of_jaw() {
+    Surface markers;
+    markers.positions = {Vec3(0, 0, 1), Vec3(0, 0.6f, 0.8f)};
+    for (int i = 0; i < 6; ++i) {
+        const float angle = kPi / 3 * static_cast<float>(i) - kPi / 2;
+        markers.positions.push_back(
+            glm::normalize(Vec3(0.6f * std::cos(angle), 0.6f * std::sin(angle), 0.75f)));
+    }
+    markers.corners = {0, 2, 3, 0, 3, 4, 0, 4, 1, 1, 4, 5, 0, 1, 6, 1, 5, 6, 0, 6, 7, 0, 7, 2};
+    markers.update();
+    Skin skin;
+    constexpr int kRows = 40;
+    for (int row = 0; row <= kRows; ++row) {
+        for (int column = 0; column < 2 * kRows; ++column) {
+            const float up = kPi * (static_cast<float>(row) / kRows - 0.5f);
+            const float around = kPi * static_cast<float>(column) / kRows;
+            skin.positions.emplace_back(
+                std::cos(up) * std::sin(around), std::sin(up), std::cos(up) * std::cos(around));
+        }
+    }
+    skin.normals = skin.positions;
+    skin.tangents.assign(skin.positions.size(), Vec4(1, 0, 0, 1));
+    skin.anchors = bind_to_patches(
+        skin.positions, skin.normals, skin.tangents, markers.positions, markers.corners, 0.8f);
+    Surface open = markers;
+    open.positions[2].y -= 0.2f;
+    open.update();
+    const Skin moved = skin.follow(open);
+    float largest = 0.0f;
+    float fall = 0.0f;
+    const auto stretch = [&](std::size_t a, std::size_t b) {
+        const float rest = glm::distance(skin.positions[a], skin.positions[b]);
+        if (rest > 1e-3f) {
+            largest =
+                std::max(largest, glm::distance(moved.positions[a], moved.positions[b]) / rest);
+        }
+    };
+    for (std::size_t v = 0; v < skin.positions.size(); ++v) {
+        fall = std::max(fall, skin.positions[v].y - moved.positions[v].y);
+        if (v + 2 * kRows < skin.positions.size()) {
+            stretch(v, v + 2 * kRows);
+        }
+        stretch(v, v % (2 * kRows) == 2 * kRows - 1 ? v + 1 - 2 * kRows : v + 1);
+    }
+    CHECK(fall > 0.15f);
+    return largest;
+}
+
+TEST_CASE(
+    "patches: eight markers on the front of a ball do not tear it"
+    * technique("face.bids-project, face.mocap-drive")) {
+    CHECK(largest_stretch_of_jaw() < 1.6f);
 }
 
 TEST_CASE(
