@@ -67,7 +67,8 @@ bool solve(LinearSystem& system) {
 
 }  // namespace
 
-Result<PointWarp> make_point_warp(std::span<const Vec3> from, std::span<const Vec3> to) {
+Result<PointWarp>
+make_point_warp(std::span<const Vec3> from, std::span<const Vec3> to, WarpKernel kernel) {
     LIMN_CHECK(from.size() == to.size());
     const std::size_t count = from.size();
     if (count < 4) {
@@ -80,8 +81,8 @@ Result<PointWarp> make_point_warp(std::span<const Vec3> from, std::span<const Ve
     for (std::size_t i = 0; i < count; ++i) {
         system.right[i] = WarpDVec3(to[i]);
         for (std::size_t j = 0; j < count; ++j) {
-            system.matrix[i * system.size + j] =
-                glm::distance(WarpDVec3(from[i]), WarpDVec3(from[j]));
+            const double r = glm::distance(WarpDVec3(from[i]), WarpDVec3(from[j]));
+            system.matrix[i * system.size + j] = kernel == WarpKernel::Cubic ? r * r * r : r;
         }
         for (int k = 0; k < 4; ++k) {
             const double value = k < 3 ? static_cast<double>(from[i][k]) : 1.0;
@@ -94,6 +95,7 @@ Result<PointWarp> make_point_warp(std::span<const Vec3> from, std::span<const Ve
         return fail("found points to warp by that coincide or lie in one plane");
     }
     PointWarp warp;
+    warp.kernel = kernel;
     warp.centers.assign(from.begin(), from.end());
     for (std::size_t i = 0; i < count; ++i) {
         warp.weights.emplace_back(system.right[i]);
@@ -110,7 +112,8 @@ Result<PointWarp> make_point_warp(std::span<const Vec3> from, std::span<const Ve
 Vec3 warp_point(const PointWarp& warp, const Vec3& p) {
     Vec3 moved = transform_point(warp.affine, p);
     for (std::size_t i = 0; i < warp.centers.size(); ++i) {
-        moved += glm::distance(p, warp.centers[i]) * warp.weights[i];
+        const float r = glm::distance(p, warp.centers[i]);
+        moved += (warp.kernel == WarpKernel::Cubic ? r * r * r : r) * warp.weights[i];
     }
     return moved;
 }

@@ -201,12 +201,31 @@ void add_sun(World& world, const Quat& camera, float radius, ModelView& view) {
     view.added.push_back(sun);
 }
 
+/// Whether the model speaks or performs a take (speak_command.h): it is looked in the face.
+bool is_speaking(const World& world) {
+    const std::vector<ClipData>& clips = world.resource<Assets>().clips;
+    return !clips.empty() && (clips[0].name == "speech" || clips[0].name == "take");
+}
+
+/// frame_bounds; from the front, slightly above, if it speaks.
+Framing frame_model(const World& world, const Bounds& subject, bool turns) {
+    Framing framing = frame_bounds(subject, kFovY, kAspect, turns);
+    if (!turns && is_speaking(world)) {
+        const Vec3 middle = is_empty(subject) ? Vec3(0) : center(subject);
+        const float distance = glm::distance(framing.camera.position, middle);
+        const Vec3 front = glm::normalize(Vec3(0.08f, 0.05f, 1.0f));  // by eye
+        framing.camera.position = middle + distance * front;
+        framing.camera.rotation = look_along(-front);
+    }
+    return framing;
+}
+
 /// The framing camera, on a turning pivot if it has a turntable.
 void add_model_camera(World& world, double turntable, ModelView& view) {
     Camera camera{.fov_y = kFovY};
     const float size = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
     camera.near = kNearPlane * size;
-    const Framing framing = frame_bounds(view.subject, kFovY, kAspect, turntable > 0);
+    const Framing framing = frame_model(world, view.subject, turntable > 0);
     const FramingState state = {framing.aspect};
     Transform position = framing.camera;
     if (turntable <= 0) {
@@ -342,7 +361,7 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
         }
         world.insert_resource(environment);
         world.insert_resource(model_exposure(ev));
-        const Quat rotation = frame_bounds(view.subject, kFovY, kAspect).camera.rotation;
+        const Quat rotation = frame_model(world, view.subject, false).camera.rotation;
         if (lux <= kNoLight && backdrop.name == "sky") {
             add_sun(world, rotation, radius, view);
         } else if (lux <= kNoLight) {

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -51,16 +53,21 @@ Result<SpeechTrack> read_sounds(const JsonValue& sounds, const std::string& file
     return track;
 }
 
-Result<SpeechRecording> read_recording(const JsonValue& json, float rate, const std::string& file) {
+Result<SpeechRecording>
+read_recording(const JsonValue& json, float rate, std::size_t channels, const std::string& file) {
     SpeechRecording recording;
     recording.text = json["text"].text;
+    recording.sound_file = json["sound"].text;
+    if (recording.sound_file.find('/') != std::string::npos) {
+        return found(json["sound"], file, "the name of a .wav in the folder of the library");
+    }
     recording.track = LIMN_TRY(read_sounds(json["sounds"], file));
     recording.motion.rate = rate;
-    recording.motion.channels = kMouthAxes;
+    recording.motion.channels = channels;
     const JsonValue& samples = json["samples"];
     for (const JsonValue& sample : samples.items) {
-        if (sample.items.size() != kMouthAxes) {
-            return found(sample, file, format_text("{} numbers", kMouthAxes));
+        if (sample.items.size() != channels) {
+            return found(sample, file, format_text("{} numbers", channels));
         }
         for (const JsonValue& value : sample.items) {
             if (value.kind != JsonKind::Number || std::abs(value.number) > kMaxPose) {
@@ -79,6 +86,33 @@ Result<SpeechRecording> read_recording(const JsonValue& json, float rate, const 
     return recording;
 }
 
+Status read_markers(const JsonValue& json, const std::string& file, SpeechLibrary& library) {
+    for (const JsonValue& name : json["markers"].items) {
+        if (name.kind != JsonKind::String) {
+            return found(name, file, "the name of a marker");
+        }
+        library.markers.push_back(name.text);
+    }
+    for (const JsonValue& point : json["rest"].items) {
+        Vec3 rest(0);
+        for (std::size_t k = 0; k < 3 && point.items.size() == 3; ++k) {
+            rest[static_cast<int>(k)] = static_cast<float>(point.items[k].number);
+        }
+        if (point.items.size() != 3 || !is_finite(rest)) {
+            return found(point, file, "three numbers");
+        }
+        library.rest.push_back(rest);
+    }
+    if (library.rest.size() != library.markers.size()) {
+        const JsonValue& rest = json["rest"];
+        return found(
+            rest.at.line > 0 ? rest : json, file,
+            format_text(
+                "\"rest\" with the positions of the {} \"markers\"", library.markers.size()));
+    }
+    return Done{};
+}
+
 }  // namespace
 
 Result<SpeechLibrary> parse_speech_library(std::string_view text, const std::string& file) {
@@ -90,15 +124,27 @@ Result<SpeechLibrary> parse_speech_library(std::string_view text, const std::str
         return found(
             rate.at.line > 0 ? rate : json, file, "a \"rate\" from 1 to 1000 samples per second");
     }
+    LIMN_TRY(read_markers(json, file, library));
     for (const JsonValue& recording : json["recordings"].items) {
-        library.recordings.push_back(LIMN_TRY(read_recording(recording, library.rate, file)));
+        library.recordings.push_back(
+            LIMN_TRY(read_recording(recording, library.rate, library.channels(), file)));
     }
     return library;
 }
 
 Result<SpeechLibrary> load_speech_library(const std::string& path) {
     const std::vector<std::byte> bytes = LIMN_TRY(read_file(path));
-    return parse_speech_library({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    SpeechLibrary library = LIMN_TRY(
+        parse_speech_library({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path));
+    for (SpeechRecording& recording : library.recordings) {
+        if (!recording.sound_file.empty()) {
+            const std::string sound =
+                std::filesystem::path(path).replace_filename(recording.sound_file).string();
+            const std::vector<std::byte> wave = LIMN_TRY(read_file(sound));
+            recording.sound = LIMN_TRY(parse_wave(wave, sound));
+        }
+    }
+    return library;
 }
 
 std::string write_speech_library(const SpeechLibrary& library) {
@@ -122,17 +168,37 @@ std::string write_speech_library(const SpeechLibrary& library) {
             }
             samples.items.push_back(std::move(sample));
         }
-        recordings.items.push_back(json_object(
+        JsonValue object = json_object(
             {{"text", {}, json_of(std::string_view(recording.text))},
-             {"sounds", {}, std::move(sounds)},
-             {"samples", {}, std::move(samples)}}));
+             {"sounds", {}, std::move(sounds)}});
+        if (!recording.sound_file.empty()) {
+            object.members.push_back(
+                {"sound", {}, json_of(std::string_view(recording.sound_file))});
+        }
+        object.members.push_back({"samples", {}, std::move(samples)});
+        recordings.items.push_back(std::move(object));
     }
-    return write_json(json_object(
-        {{"rate", {}, json_of(library.rate)}, {"recordings", {}, std::move(recordings)}}));
+    JsonValue object = json_object({{"rate", {}, json_of(library.rate)}});
+    if (!library.markers.empty()) {
+        JsonValue markers = json_array();
+        JsonValue rest = json_array();
+        for (std::size_t m = 0; m < library.markers.size(); ++m) {
+            markers.items.push_back(json_of(std::string_view(library.markers[m])));
+            JsonValue point = json_array();
+            for (int k = 0; k < 3; ++k) {
+                point.items.push_back(json_of(library.rest[m][k]));
+            }
+            rest.items.push_back(std::move(point));
+        }
+        object.members.push_back({"markers", {}, std::move(markers)});
+        object.members.push_back({"rest", {}, std::move(rest)});
+    }
+    object.members.push_back({"recordings", {}, std::move(recordings)});
+    return write_json(object);
 }
 
 SpeechRecording record_mouth(const std::string& text, const SpeechTrack& track, float rate) {
-    SpeechRecording recording{text, track, {}};
+    SpeechRecording recording{.text = text, .track = track, .motion = {}};
     recording.motion.rate = rate;
     recording.motion.channels = kMouthAxes;
     const MouthTrack mouth = make_mouth_track(track);

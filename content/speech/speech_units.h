@@ -2,6 +2,7 @@
 
 #include "content/speech/resample.h"
 #include "content/speech/speech_track.h"
+#include "content/speech/wave_file.h"
 #include "ecs/base/result.h"
 
 #include <cstdint>
@@ -15,12 +16,14 @@ namespace limn {
 // units, and an utterance is covered by as few of them as possible, since sounds that were spoken
 // together already shape each other.
 
-/// One recording: its text, timing and the motion of the face. `track` covers it from 0 on, with
-/// silence at both ends.
+/// One recording: its text, timing, the motion of the face and the sound. `track` covers it from 0
+/// on, with silence at both ends.
 struct SpeechRecording {
     std::string text;
     SpeechTrack track;
     SampledCurves motion;
+    std::string sound_file = {};  ///< .wav beside the library, or none
+    Recording sound = {};         ///< without samples: none
 };
 
 enum class UnitKind : std::uint8_t {

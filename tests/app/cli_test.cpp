@@ -64,7 +64,7 @@ TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
          {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "import", "make",
-          "levels", "shows", "components"}) {
+          "export", "speak", "levels", "shows", "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
         CHECK(run.exit_code == 0);

@@ -7,6 +7,7 @@
 #include "content/app/commands/command_options.h"
 #include "content/app/commands/compare_command.h"
 #include "content/app/commands/hash_command.h"
+#include "content/app/commands/head_scene.h"
 #include "content/app/commands/image_commands.h"
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/import_command.h"
@@ -417,6 +418,24 @@ Command add_import(CLI::App& program, ImportOptions& options) {
     app->add_flag(
         "--head", options.head,
         "markers only: they are named after those of the built-in head, see below");
+    app->add_option("--onto", options.onto, "markers only: a face that performs the recording")
+        ->type_name("FACE.glb");
+    app->add_option("--map", options.map, "places of the markers on that face, see below")
+        ->type_name("FILE");
+    app->add_flag("--patches", options.patches, "write the markers on that face, not its shapes");
+    app->add_option(
+           "--library", options.library,
+           "markers only: add the recording with its sound, for limn speak --fragments")
+        ->type_name("FILE.json");
+    app->add_option("--text", options.text, "what is said in the recording");
+    app->add_option("--sound", options.sound, "of the recording; default: the .wav beside it")
+        ->type_name("FILE.wav");
+    app->add_option(
+           "--labels", options.labels,
+           "when it is said, lines of start, end [s] and word (or sound, from \"sil\" on), as "
+           "Audacity\n"
+           "exports them; default: found by the pauses of the sound and the length of the text")
+        ->type_name("FILE.txt");
     add_assignments(*app, options.assignments, "--set", "bvh only: scale, up, rate or positions");
     app->footer(
         "bvh: recorded motion, as a skeleton with a clip and a figure of bones. Settings:\n"
@@ -437,13 +456,21 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "has the file as its gltf. With --head, markers are named as in the mesh of the built-in\n"
         "head, part \"markers\": mouth9_90_M is on loop 9 of the mouth, at 90 degrees, on the\n"
         "midline; the recorded face may be another, and markers that it lacks follow their\n"
-        "neighbors.\n\n"
+        "neighbors.\n"
+        "With --onto, the recording is moved to another face by a warp through pairs of points:\n"
+        "each marker's place is that of a line \"marker = x y z\" [m] or \"marker = place\" in the "
+        "map,\n"
+        "or follows from its name. Places are markers of the built-in head, or chin, jaw, mouth,\n"
+        "upperlip, lowerlip, nose, nostril, cheek, browinner, browouter, forehead and so on, with\n"
+        "L, R, left or right where there are two.\n\n"
         "Examples:\n"
         "  limn import bvh walk.bvh -o walk.glb --set scale=0.01 --set up=z\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
         "  limn import markers take.trc -o take.glb\n"
         "  limn import markers take.trc --head -o take.glb\n"
+        "  limn import markers take.trc --onto face.glb -o acted.glb\n"
+        "  limn import markers take.trc -o take.glb --library clock.json --text \"It is one.\"\n"
         "  limn play face.glb");
     return {app, [&options] { return run_import(options); }};
 }
@@ -471,10 +498,28 @@ Command add_make(CLI::App& program, MakeOptions& options) {
     return {app, [&options] { return run_make(options); }};
 }
 
+Command add_export(CLI::App& program, ExportOptions& options) {
+    CLI::App* app = program.add_subcommand("export", "Write the built-in head as glTF");
+    app->add_option("name", options.name, "head, or portrait: with hair")
+        ->type_name("NAME")
+        ->required()
+        ->check(CLI::IsMember({"head", "portrait"}));
+    app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    app->footer("Skin, eyes, teeth and mouth, with skeleton and the shapes of its FACS action "
+                "units, for\n"
+                "limn speak, limn import markers --onto or other programs.\n\n"
+                "Examples:\n"
+                "  limn export head -o head.glb\n"
+                "  limn speak \"Hello!\" --face head.glb -o hello.glb");
+    return {app, [&options] { return run_export(options); }};
+}
+
 Command add_speak(CLI::App& program, SpeakOptions& options) {
     CLI::App* app = program.add_subcommand("speak", "Make a face speak a text, with audio");
     app->add_option("text", options.text, "what it says, in English")->required();
-    app->add_option("--face", options.face, "face whose shapes have FACS action units")
+    app->add_option(
+           "--face", options.face,
+           "face whose shapes have FACS action units, or head or portrait: the built-in head")
         ->type_name("FILE.glb")
         ->required();
     app->add_option("-o,--out", options.out, "file to write; sound goes beside it as .wav")
@@ -486,8 +531,11 @@ Command add_speak(CLI::App& program, SpeakOptions& options) {
         *app, options.expression, "--express",
         "weight of a shape or action unit while speaking, as AU12=0.5");
     app->add_option(
-           "--fragments", options.fragments, "use the motion of these recordings instead of rules")
+           "--fragments", options.fragments,
+           "use the motion and the sound of these recordings instead of rules")
         ->type_name("FILE.json");
+    app->add_option("--map", options.map, "places of their markers on the face, as of limn import")
+        ->type_name("FILE");
     app->add_option("--record", options.record, "add the utterance to these recordings")
         ->type_name("FILE.json");
     app->add_flag("--silent", options.silent, "pronounce by rules, without espeak-ng and audio");
@@ -567,6 +615,7 @@ struct AllOptions {
     std::string info_file;
     ImportOptions import_options;
     MakeOptions make;
+    ExportOptions exported;
     SpeakOptions speak;
     std::vector<std::string> show;
     std::string checked;
@@ -589,6 +638,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_info(program, options.info_file),
         add_import(program, options.import_options),
         add_make(program, options.make),
+        add_export(program, options.exported),
         add_speak(program, options.speak),
         add_levels(program),
         add_shows(program, options.show),

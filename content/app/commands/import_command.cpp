@@ -1,10 +1,10 @@
 #include "content/app/commands/import_command.h"
 
 #include "content/app/commands/bake_recipe.h"
+#include "content/app/commands/import_markers.h"
 #include "content/app/commands/progress.h"
 #include "content/load/faces/ict_facekit.h"
 #include "content/load/faces/makehuman.h"
-#include "content/load/faces/marker_import.h"
 #include "content/load/gltf/gltf_write.h"
 #include "content/load/motion/motion_scene.h"
 #include "ecs/base/text.h"
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -37,8 +38,15 @@ Status import_bvh(const ImportOptions& options) {
 }  // namespace
 
 Status run_import(const ImportOptions& options) {
-    if (options.head && options.kind != "markers") {
-        return fail("--head: found {}, expected markers", options.kind);
+    if (options.kind == "markers") {
+        return import_marker_take(options);
+    }
+    for (const auto& [option, is_set] :
+         {std::pair{"--head", options.head}, std::pair{"--onto", !options.onto.empty()},
+          std::pair{"--library", !options.library.empty()}}) {
+        if (is_set) {
+            return fail("{}: found {}, expected markers", option, options.kind);
+        }
     }
     if (!options.out.ends_with(".glb")) {
         return fail("{}: expected a file name ending in .glb", options.out);
@@ -56,11 +64,9 @@ Status run_import(const ImportOptions& options) {
         }
         progress->update(done);
     };
-    const MarkerSurface surface = options.head ? make_head_marker_surface() : MarkerSurface{};
     const GltfScene scene = LIMN_TRY(
-        options.kind == "markers" ? import_markers(options.in, options.head ? &surface : nullptr)
-        : options.kind == "makehuman" ? import_makehuman(options.in, show)
-                                      : import_ict_facekit(options.in, show));
+        options.kind == "makehuman" ? import_makehuman(options.in, show)
+                                    : import_ict_facekit(options.in, show));
     LIMN_TRY(save_glb(options.out, scene));
     progress.reset();
 
@@ -72,12 +78,6 @@ Status run_import(const ImportOptions& options) {
     std::string joints;
     if (!scene.skeleton.joints.empty()) {
         joints = fmt::format(", {} joints", scene.skeleton.joints.size() - 1);
-    }
-    if (options.kind == "markers") {
-        fmt::print(
-            "{}: {} markers, {} triangles, {:.2f} s\n", options.out, vertices,
-            skin.indices.size() / 3, scene.clips[0].duration);
-        return Done{};
     }
     fmt::print(
         "{}: {} parts, {} vertices, {} shapes, {} regions{}\n", options.out, scene.meshes.size(),

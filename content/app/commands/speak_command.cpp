@@ -1,19 +1,28 @@
 #include "content/app/commands/speak_command.h"
 
+#include "content/app/commands/head_scene.h"
+#include "content/app/commands/import_markers.h"
 #include "content/load/files/atomic_file.h"
 #include "content/load/gltf/gltf_clip.h"
+#include "content/load/gltf/gltf_write.h"
 #include "content/speech/face_clip.h"
 #include "content/speech/head_motion.h"
 #include "content/speech/speech_library.h"
+#include "content/speech/unit_sound.h"
 #include "content/speech/utterance.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <set>
+#include <span>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -33,9 +42,35 @@ struct FaceNode {
     std::vector<float> expression;
 };
 
+/// What a text becomes: timing, sound, and the motion of the mouth, either by its axes or by the
+/// weights of the face's shapes.
+struct Speech {
+    SpeechTrack track;
+    Recording wave;       ///< without samples: silent
+    SampledCurves mouth;  ///< with the channels of a MouthPose
+    std::vector<std::string> shapes;
+    std::vector<std::vector<float>> weights;  ///< rows of `shapes` at kRate, or none
+};
+
+/// Adds the recorded weights to those of an expression, which yields where the mouth speaks.
+void add_recorded(
+    const GltfFaceNode& node, const Speech& speech, std::size_t frame, std::span<float> row) {
+    const std::vector<float>& recorded = speech.weights[std::min(frame, speech.weights.size() - 1)];
+    std::vector<float> own(row.size(), 0.0f);
+    add_weights_by_name(node, speech.shapes, recorded, own);
+    float engaged = 0.0f;
+    for (std::size_t s = 0; s < row.size(); ++s) {
+        engaged = std::max(engaged, moves_mouth(node.shapes[s]) ? own[s] : 0.0f);
+    }
+    for (std::size_t s = 0; s < row.size(); ++s) {
+        row[s] = own[s] + row[s] * (moves_mouth(node.shapes[s]) ? 1.0f - engaged : 1.0f);
+    }
+}
+
 GltfFaceClip make_clip(
-    const GltfFace& face, const std::vector<FaceNode>& nodes, const SpeechTrack& track,
-    const SampledCurves& mouth, std::uint64_t seed) {
+    const GltfFace& face, const std::vector<FaceNode>& nodes, const Speech& speech,
+    std::uint64_t seed) {
+    const SpeechTrack& track = speech.track;
     const EyeTrack eyes = make_eye_track(track.duration(), seed);
     const auto frames = static_cast<std::size_t>(std::ceil(track.duration() * kRate)) + 1;
     GltfFaceClip clip{.name = "speech", .times = {}, .weights = {}, .head_rotations = {}};
@@ -44,11 +79,14 @@ GltfFaceClip make_clip(
         const float time = static_cast<float>(frame) / kRate;
         clip.times.push_back(time);
         for (std::size_t i = 0; i < face.nodes.size(); ++i) {
-            const MouthPose pose = mouth_at(mouth, time);
+            const MouthPose pose = mouth_at(speech.mouth, time);
             std::vector<float> row = nodes[i].expression;
             for (std::size_t s = 0; s < row.size(); ++s) {
                 row[s] *=
                     moves_mouth(face.nodes[i].shapes[s]) ? mouth_expression_weight(pose) : 1.0f;
+            }
+            if (!speech.weights.empty()) {
+                add_recorded(face.nodes[i], speech, frame, row);
             }
             add_face_weights(nodes[i].links, pose, eyes_at(eyes, time), row);
             clip.weights[i].insert(clip.weights[i].end(), row.begin(), row.end());
@@ -69,10 +107,14 @@ Status express(
     }
     bool is_known = false;
     std::set<std::string> units;
+    std::set<std::string> shapes;
     for (std::size_t i = 0; i < face.nodes.size(); ++i) {
         for (std::size_t s = 0; s < face.nodes[i].shapes.size(); ++s) {
             const GltfShape& shape = face.nodes[i].shapes[s];
-            units.insert(shape.action_unit.empty() ? shape.name : shape.action_unit);
+            shapes.insert(shape.name);
+            if (!shape.action_unit.empty()) {
+                units.insert(shape.action_unit);
+            }
             if (is_shape(shape, assignment.path)) {
                 nodes[i].expression[s] = static_cast<float>(*weight);
                 is_known = true;
@@ -81,8 +123,9 @@ Status express(
     }
     if (!is_known) {
         return fail(
-            "{}: found no shape \"{}\", expected one of {}", file, assignment.path,
-            fmt::format("{}", fmt::join(units, " ")));
+            "{}: found no shape \"{}\", expected an action unit, {}, or a shape, {}", file,
+            assignment.path, units.empty() ? "none" : fmt::format("{}", fmt::join(units, " ")),
+            fmt::format("{}", fmt::join(shapes, " ")));
     }
     return Done{};
 }
@@ -121,20 +164,58 @@ Result<Utterance> utter(const SpeakOptions& options) {
     return speak_utterance(options.text, options.voice);
 }
 
-/// The motion of the mouth: from the recordings of a library, or by rules.
-Result<SampledCurves> move_mouth(const SpeechTrack& track, const SpeakOptions& options) {
-    if (options.fragments.empty()) {
-        return record_mouth(options.text, track, kRate).motion;
-    }
+/// Speech from recordings: their motion, and their sound where they have it, at their pace.
+Result<Speech> speak_fragments(const Utterance& spoken, const SpeakOptions& options) {
     const SpeechLibrary library = LIMN_TRY(load_speech_library(options.fragments));
+    // Takes are labeled by spelling rules (take_labels.h), so that their words are found by these.
+    const Utterance utterance = library.markers.empty() ? spoken : spell_utterance(options.text);
     const std::vector<SpeechUnit> units = generate_units(library.recordings);
     const Result<std::vector<SelectedUnit>> selected =
-        select_units(track, units, library.recordings, kJoinCost);
+        select_units(utterance.track, units, library.recordings, kJoinCost);
     if (!selected) {
         return fail("{}: {}", options.fragments, selected.error().message);
     }
-    fmt::print("{}: {} recorded units\n", options.fragments, selected->size());
-    return join_units(track, *selected, library.recordings, kRate);
+    Speech speech{utterance.track, utterance.wave, {}, {}, {}};
+    const SpeechTrack paced = pace_by_units(utterance.track, *selected, library.recordings);
+    Recording joined = join_sound(paced, *selected, library.recordings);
+    const bool has_sound = !joined.samples.empty();
+    if (has_sound) {
+        speech.track = paced;
+        speech.wave = std::move(joined);
+    }
+    fmt::print(
+        "{}: {} recorded units, {}\n", options.fragments, selected->size(),
+        has_sound ? "with their sound" : "without sound of their own");
+    SampledCurves motion = join_units(speech.track, *selected, library.recordings, kRate);
+    if (library.markers.empty()) {
+        speech.mouth = std::move(motion);
+        return speech;
+    }
+    const FaceMarkers places = LIMN_TRY(place_on_face(options.face, library.markers, options.map));
+    MarkerMotion markers{library.markers, kRate, library.rest};  // the first frame is at rest
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+        for (std::size_t m = 0; m < library.markers.size(); ++m) {
+            const std::span<const float> offset = motion.row(i).subspan(3 * m, 3);
+            markers.positions.push_back(library.rest[m] + Vec3(offset[0], offset[1], offset[2]));
+        }
+    }
+    speech.shapes = places.shapes;
+    speech.weights = drive_shapes(places, retarget_markers(markers, places.points));
+    speech.weights.erase(speech.weights.begin());
+    return speech;
+}
+
+/// The motion of the mouth: from the recordings of a library, or by rules.
+Result<Speech> make_speech(const Utterance& utterance, const SpeakOptions& options) {
+    if (!options.fragments.empty()) {
+        return speak_fragments(utterance, options);
+    }
+    return Speech{
+        utterance.track,
+        utterance.wave,
+        record_mouth(options.text, utterance.track, kRate).motion,
+        {},
+        {}};
 }
 
 /// Adds the utterance to a library, which is created if it does not exist.
@@ -143,8 +224,40 @@ Status record(const Utterance& utterance, const SpeakOptions& options) {
     if (std::filesystem::exists(options.record)) {
         library = LIMN_TRY(load_speech_library(options.record));
     }
+    if (!library.markers.empty()) {
+        return fail(
+            "{}: found recordings of markers, expected a library that --record wrote",
+            options.record);
+    }
     library.recordings.push_back(record_mouth(options.text, utterance.track, library.rate));
     return write_file(options.record, write_speech_library(library));
+}
+
+}  // namespace
+
+namespace {
+
+/// Speaks with a face that is a file.
+Status speak_file(const SpeakOptions& options) {
+    const GltfFace face = LIMN_TRY(read_gltf_face(options.face));
+    const std::vector<FaceNode> nodes = LIMN_TRY(link_face(face, options));
+    const Utterance utterance = LIMN_TRY(utter(options));
+    const Speech speech = LIMN_TRY(make_speech(utterance, options));
+    const GltfFaceClip clip = make_clip(face, nodes, speech, options.seed);
+    const std::vector<std::byte> bytes = LIMN_TRY(add_face_clip(options.face, face, clip));
+    std::string sound = "silent: no .wav is written";
+    if (!speech.wave.samples.empty()) {
+        sound = std::filesystem::path(options.out).replace_extension(".wav").string();
+        LIMN_TRY(write_file(sound, write_wave(speech.wave)));
+    }
+    LIMN_TRY(write_file(options.out, bytes));
+    if (!options.record.empty()) {
+        LIMN_TRY(record(utterance, options));
+    }
+    fmt::print(
+        "{}: {:.2f} s, {} phonemes, {}\n", options.out, speech.track.duration(),
+        speech.track.segments.size(), sound);
+    return Done{};
 }
 
 }  // namespace
@@ -156,25 +269,20 @@ Status run_speak(const SpeakOptions& options) {
     if (phrases_of(options.text).empty()) {
         return fail("limn speak: found a text without letters or digits, expected words to say");
     }
-    const GltfFace face = LIMN_TRY(read_gltf_face(options.face));
-    const std::vector<FaceNode> nodes = LIMN_TRY(link_face(face, options));
-    const Utterance utterance = LIMN_TRY(utter(options));
-    const SampledCurves mouth = LIMN_TRY(move_mouth(utterance.track, options));
-    const GltfFaceClip clip = make_clip(face, nodes, utterance.track, mouth, options.seed);
-    const std::vector<std::byte> bytes = LIMN_TRY(add_face_clip(options.face, face, clip));
-    std::string sound = "no audio";
-    if (!utterance.wave.samples.empty()) {
-        sound = std::filesystem::path(options.out).replace_extension(".wav").string();
-        LIMN_TRY(write_file(sound, write_wave(utterance.wave)));
+    if (!options.map.empty() && options.fragments.empty()) {
+        return fail("--map: found no --fragments, expected a library with markers");
     }
-    LIMN_TRY(write_file(options.out, bytes));
-    if (!options.record.empty()) {
-        LIMN_TRY(record(utterance, options));
+    if (!is_head_name(options.face)) {
+        return speak_file(options);
     }
-    fmt::print(
-        "{}: {:.2f} s, {} sounds, {}\n", options.out, utterance.track.duration(),
-        utterance.track.segments.size(), sound);
-    return Done{};
+    SpeakOptions own = options;
+    own.face = std::filesystem::path(options.out).replace_extension(".face.glb").string();
+    const GltfScene head = LIMN_TRY(make_head_scene(options.face));
+    LIMN_TRY(save_glb(own.face, head));
+    Status spoken = speak_file(own);
+    std::error_code ignored;
+    std::filesystem::remove(own.face, ignored);
+    return spoken;
 }
 
 }  // namespace limn

@@ -18,10 +18,11 @@ namespace limn {
 
 struct SpeakOptions {
     std::string text;
-    std::string face;          ///< .gltf or .glb with shapes that have action units
+    std::string face;          ///< .gltf or .glb with shapes that have action units, or a head
     std::string out;           ///< .glb; audio goes to the same name as .wav
     std::string voice = "en";  ///< of espeak-ng
     std::string fragments;     ///< library of recordings whose motion is used; empty: by rules
+    std::string map;           ///< places of the library's markers on the face
     std::string record;        ///< library to which the utterance is added; empty: none
     std::vector<Assignment> expression;  ///< shapes or action units and their weights
     bool silent = false;                 ///< by rules, without espeak-ng and audio

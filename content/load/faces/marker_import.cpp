@@ -193,6 +193,12 @@ std::vector<std::uint32_t> triangulate_markers(std::span<const Vec3> positions) 
     return triangulate_points(unroll(positions));
 }
 
+Result<MarkerMotion> isolate_face(const std::string& name, MarkerMotion motion) {
+    Take take = LIMN_TRY(make_take(name, std::move(motion)));
+    fill_gaps(take.face, take.rest);
+    return std::move(take.face);
+}
+
 Result<GltfScene> make_marker_scene(const std::string& name, MarkerMotion motion) {
     Take take = LIMN_TRY(make_take(name, std::move(motion)));
     fill_gaps(take.face, take.rest);

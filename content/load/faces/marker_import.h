@@ -29,6 +29,10 @@ struct MarkerSurface {
 /// The marker surface of the generated head (head_markers.h).
 [[nodiscard]] MarkerSurface make_head_marker_surface();
 
+/// The motion of the face without that of the head, and without gaps; markers of the head are left
+/// out. The first frame is the face at rest. Fails as make_marker_scene does.
+[[nodiscard]] Result<MarkerMotion> isolate_face(const std::string& name, MarkerMotion motion);
+
 /// The first frame is the face at rest, +y up. Markers whose names begin with "head" serve to
 /// remove the head's motion; they are not part of the surface. Fails with one line when the first
 /// frame lacks a marker, the head's markers do not determine its pose, or fewer than three others
