@@ -539,8 +539,9 @@ void step_weights(const Assets& assets, const Playback& playback, MorphWeights& 
 
 void add_poses(
     Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
-    Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
-    Res<const Assets> assets, Commands commands) {
+    Query<const Deformed, const ControlSurface> surfaces,
+    Query<const Deformed, const MeshLevels, With<MorphPlayer>> levels,
+    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands) {
     if (bare.empty()) {
         return;
     }
@@ -560,6 +561,11 @@ void add_poses(
     });
     surfaces.each([&](const Deformed& deformed, const ControlSurface& surface) {
         count_targets(deformed, surface.mesh);
+    });
+    levels.each([&](const Deformed& deformed, const MeshLevels& each) {
+        for (const MeshId mesh : each.meshes) {
+            count_targets(deformed, mesh);
+        }
     });
     for (const auto& [character, count] : counts) {
         commands.add(character, MorphWeights{std::vector<float>(count, 0.0f), {}});

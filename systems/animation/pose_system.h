@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/crowd_pose.h"
+#include "ecs/components/mesh_levels.h"
 #include "ecs/components/step_jumps.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/surface_binding.h"
@@ -26,12 +27,13 @@ namespace limn {
 // does not fit the skeleton is ignored: the character keeps its rest pose.
 
 /// Adds a Pose to every Skeleton that lacks one, and MorphWeights of 0 to those among them that
-/// lack weights although their meshes, or surfaces that move meshes, have morph targets. Before
-/// update_poses, with a sync point in between.
+/// lack weights although their meshes, surfaces that move meshes, or levels of detail of those with
+/// a MorphPlayer have morph targets. Before update_poses, with a sync point in between.
 void add_poses(
     Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
-    Query<const Deformed, const ControlSurface> surfaces, Query<const MorphWeights> weights,
-    Res<const Assets> assets, Commands commands);
+    Query<const Deformed, const ControlSurface> surfaces,
+    Query<const Deformed, const MeshLevels, With<MorphPlayer>> levels,
+    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands);
 
 /// Samples the clips, applies the modifiers: writes Pose and MorphWeights. Allocates only for new
 /// characters. Those with a CrowdPose are posed together unless they have modifiers, and only when

@@ -25,7 +25,7 @@ constexpr std::array<PersonPart, 6> kParts = {PersonPart::Skin,     PersonPart::
                                               PersonPart::Trousers, PersonPart::Shoes};
 
 /// People who together wear everything there is.
-const std::array<PersonShape, 5> kPeople = {{
+const std::array<PersonShape, 6> kPeople = {{
     {.seed = 1,
      .sex = PersonSex::Woman,
      .hair = PersonHair::Long,
@@ -61,6 +61,13 @@ const std::array<PersonShape, 5> kPeople = {{
      .top = PersonTop::Jumper,
      .legs = PersonLegwear::Trousers,
      .sleeves = PersonSleeves::Long},
+    {.seed = 6,
+     .height = 1.2f,
+     .years = 7,
+     .hair = PersonHair::Long,
+     .top = PersonTop::Tee,
+     .legs = PersonLegwear::Shorts,
+     .sleeves = PersonSleeves::Short},
 }};
 
 PersonShape with_part(PersonShape shape, PersonPart part) {
@@ -345,6 +352,79 @@ TEST_CASE("person: a seed is always the same person, another seed another one") 
     }
     const MeshData other = make_person({.seed = 8});
     CHECK(other.positions != first.positions);
+}
+
+/// Vertical extents of the head, from the chin up, and of the legs, from the hip joints down, in
+/// heights of the person.
+struct Proportions {
+    float head = 0;
+    float legs = 0;
+    float shoulders = 0;
+    float hand = 0;
+};
+
+Proportions proportions_of(const PersonShape& shape) {
+    const MeshData skin = make_person(with_part(shape, PersonPart::Skin));
+    const SkeletonData skeleton = make_person_rig(shape).skeleton;
+    const auto at = [&](const char* joint) {
+        return rest_point(skeleton, static_cast<std::int32_t>(joint_called(skeleton, joint)));
+    };
+    // The chin is the foremost point of the skin a little above the neck, below the mouth.
+    const float height = skin.bounds.max.y;
+    const float eyes = at("LeftEye").y;
+    const float face = height - eyes;  // as high as the part of a head above its eyes, or less
+    float chin = eyes;
+    for (const Vec3& p : skin.positions) {
+        const bool in_front = std::abs(p.x) < 0.1f * face && p.z > at("LeftEye").z - 0.12f * face;
+        chin = in_front && p.y > eyes - 1.4f * face ? std::min(chin, p.y) : chin;
+    }
+    return {
+        (height - chin) / height, at("LeftThigh").y / height,
+        (at("LeftUpperArm").x - at("RightUpperArm").x) / height,
+        glm::distance(at("LeftHand"), at("LeftMiddle3")) / height};
+}
+
+TEST_CASE("person: children have large heads, short legs, narrow shoulders and small hands") {
+    const PersonShape base = {.seed = 3, .sex = PersonSex::Woman, .hair = PersonHair::Bald};
+    PersonShape child = base;
+    Proportions last = {.head = 1};
+    for (const float years : {4.0f, 7.0f, 10.0f, 13.0f, 16.0f, 0.0f}) {
+        CAPTURE(years);
+        child.years = years;
+        const Proportions now = proportions_of(child);
+        CAPTURE(now.head);
+        CHECK(now.head < last.head);
+        CHECK(now.legs > last.legs);
+        CHECK(now.shoulders > last.shoulders);
+        CHECK(now.hand > last.hand);
+        if (years == 4) {
+            CHECK(1 / now.head == near(5.0).epsilon(0.06));
+        } else if (years == 10) {
+            CHECK(1 / now.head == near(6.1).epsilon(0.06));
+        } else if (years == 0) {
+            CHECK(1 / now.head == near(7.5).epsilon(0.06));
+        }
+        last = now;
+    }
+}
+
+TEST_CASE("person: a child is as high as its years, or as asked") {
+    const float adult =
+        make_person({.part = PersonPart::Skin, .seed = 5, .hair = PersonHair::Bald}).bounds.max.y;
+    float last = 0;
+    for (const float years : {3.0f, 6.0f, 9.0f, 12.0f, 15.0f}) {
+        CAPTURE(years);
+        const float own =
+            make_person(
+                {.part = PersonPart::Skin, .seed = 5, .years = years, .hair = PersonHair::Bald})
+                .bounds.max.y;
+        CHECK(own > last + 0.08f);
+        CHECK(own < adult);
+        last = own;
+    }
+    const PersonShape asked = {
+        .part = PersonPart::Skin, .seed = 5, .height = 1.3f, .years = 6, .hair = PersonHair::Bald};
+    CHECK(make_person(asked).bounds.max.y == near(1.3).epsilon(0.012));
 }
 
 }  // namespace limn::person_test

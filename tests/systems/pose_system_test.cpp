@@ -250,6 +250,23 @@ TEST_CASE("pose system: new characters get weights for the morph targets of thei
     CHECK(stage.world.get<const MorphWeights>(character).weights[1] > 0);
 }
 
+TEST_CASE("pose system: faces that are animated get weights for all levels of detail") {
+    Stage stage;
+    stage.world.resource<Assets>().meshes.emplace_back();  // without morph targets
+    const MeshLevels levels = {.meshes = {{1}, {0}}};
+    const auto create = [&](auto... more) {
+        const Entity made =
+            stage.world.create(Transform{}, Skeleton{{0}}, MeshInstance{{1}, {}}, levels, more...);
+        stage.world.add(made, Deformed{.character = made, .skin = {}});
+        return made;
+    };
+    const Entity talks = create(MorphPlayer{});
+    const Entity silent = create();
+    start_world(stage.world);
+    CHECK(stage.world.get<const MorphWeights>(talks).weights == std::vector<float>(3, 0.0f));
+    CHECK_FALSE(stage.world.has<MorphWeights>(silent));
+}
+
 TEST_CASE("pose system: morph weights move without a skeleton too" * technique("char.morph-anim")) {
     Stage stage;
     ClipData fade;

@@ -7,6 +7,7 @@
 #include "content/make/person/person_clips.h"
 #include "content/make/person/person_cloth.h"
 #include "content/make/person/person_face.h"
+#include "content/make/person/person_growth.h"
 #include "content/make/person/person_parts.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace limn {
 namespace {
 
 constexpr float kSmooth = kPi;
-constexpr float kThinning = 0.0014f;      ///< what details of cloth may move [m]
+constexpr float kThinning = 0.0017f;      ///< what details of cloth may move [m]
 constexpr float kSkinThinning = 0.0005f;  ///< likewise of arms
 constexpr float kClothCrease = 1.25f;     ///< hems are sharp [rad]
 constexpr float kTrimCrease = 0.9f;
@@ -80,7 +81,7 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
         mesh.face_outwards();
         whole = mesh.finish(frame, kSmooth);
         if (!whole.indices.empty()) {
-            thin_out(whole, frame, 0.8f * kThinning, kSmooth);
+            thin_out(whole, frame, 0.7f * kThinning, kSmooth);
         }
         return whole;
     case PersonPart::Shirt:
@@ -88,7 +89,7 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
         add_shirt_trims(trims, frame);
         // What has no trims affords more triangles.
         return finish_garment(
-            mesh, trims, frame, (trims.vertices.empty() ? 0.5f : 1.0f) * kThinning);
+            mesh, trims, frame, (trims.vertices.empty() ? 0.6f : 0.95f) * kThinning);
     case PersonPart::Trousers:
         add_trousers(mesh, frame);
         add_trouser_trims(trims, frame);
@@ -113,19 +114,13 @@ MeshData make_person(const PersonShape& shape) {
     const PersonFrame frame = measure_person(shape);
     MeshData mesh = make_person_part(frame, shape.part);
     mesh.name = "person";
-    for (Vec3& p : mesh.positions) {
-        p *= frame.scale;
-    }
-    for (MorphTarget& target : mesh.morphs) {
-        for (Vec3& shift : target.positions) {
-            shift *= frame.scale;
-        }
-    }
+    const PersonFrame own = grown_frame(frame);
+    grow_mesh(mesh, frame, own);
     if (shape.triangles > 0) {
         simplify_mesh(mesh, static_cast<std::size_t>(shape.triangles));
     } else if (shape.part != PersonPart::Eyes && shape.part != PersonPart::Hair) {
         std::vector<MorphTarget> face = std::exchange(mesh.morphs, {});
-        add_bend_shapes(mesh, make_person_skeleton(frame));
+        add_bend_shapes(mesh, make_person_skeleton(own));
         std::ranges::move(face, std::back_inserter(mesh.morphs));
     }
     update_bounds(mesh);
@@ -133,7 +128,7 @@ MeshData make_person(const PersonShape& shape) {
 }
 
 MeshRig make_person_rig(const PersonShape& shape) {
-    const PersonFrame frame = measure_person(shape);
+    const PersonFrame frame = grown_frame(measure_person(shape));
     MeshRig rig;
     rig.skeleton = make_person_skeleton(frame);
     rig.skin = make_rigid_skin(rig.skeleton);

@@ -12,9 +12,9 @@ namespace limn {
 // below the horizontal. It wears the head of head.h with fewer triangles, hands with five fingers,
 // and clothes that are closed shells around the body: what is sewn onto them (collars, plackets,
 // pockets, belt loops) are small shells of their own, which levels of detail leave out. Below a
-// height of 1.5 m the proportions are those of a child. The skeleton (person_skeleton.h) has 60
-// joints with the names of a person (humanoid.h), with anatomical limits. Every person is another
-// one: what is left open is chosen by `seed`.
+// height of 1.5 m, or 17 years, the proportions are those of a child (person_growth.h). The
+// skeleton (person_skeleton.h) has 60 joints with the names of a person (humanoid.h), with
+// anatomical limits. Every person is another one: what is left open is chosen by `seed`.
 //
 // Each part is a mesh with its own material; "all" is everything in one. Vertex colors are the
 // colors of skin, cloth and hair, for white materials. Texture coordinates are meters, except for
@@ -38,6 +38,7 @@ struct PersonShape {
     float height = 0.0f;
     float build = -2.0f;
     float age = -1.0f;
+    float years = 0.0f;
     float melanin = -1.0f;
     PersonHair hair = PersonHair::Any;
     PersonTop top = PersonTop::Any;
@@ -59,6 +60,9 @@ LIMN_FIELDS(PersonShape) {
     LIMN_FIELD(height, "from the soles to the crown; 0: by sex and seed", "m", 0, 10);
     LIMN_FIELD(build, "-1: lean, 1: heavy; -2: by the seed", "", -2, 1);
     LIMN_FIELD(age, "0: twenty years, 1: seventy; -1: by the seed", "", -1, 1);
+    LIMN_FIELD(
+        years, "of a child, whose height and proportions follow; 0: grown up, or as high as asked",
+        "", 0, 18);
     LIMN_FIELD(melanin, "color of the skin, 0: fair, 1: dark; -1: by the seed", "", -1, 1);
     LIMN_FIELD(hair, .doc = "hair style", .values = "any short bob long bun bald");
     LIMN_FIELD(top, .doc = "worn on the trunk", .values = "any tee shirt jumper coat");

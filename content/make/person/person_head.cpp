@@ -75,8 +75,14 @@ bool is_in_mouth(const HeadVertex& vertex) {
     return vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop;
 }
 
-Vec3 in_body(const PersonFrame& frame, const Vec3& centimeters) {
-    return frame.head_origin + 0.01f * frame.head_scale * centimeters;
+/// From the space of the head [cm]. A child's face is short and narrow below the eyes.
+Vec3 in_body(const PersonFrame& frame, Vec3 p) {
+    constexpr float kEyeLine = 3.5f;
+    const float below = glm::smoothstep(kEyeLine, -4.0f, p.y) * glm::smoothstep(-13.5f, -8.0f, p.y);
+    p.y = kEyeLine + (p.y - kEyeLine) * (1 - 0.13f * frame.child * below);
+    p.x *= 1 - 0.05f * frame.child * below;
+    p.z -= 0.5f * frame.child * below;
+    return frame.head_origin + 0.01f * frame.head_scale * p;
 }
 
 void append_triangles(WovenHead& head, const std::array<std::uint32_t, 4>& quad) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace limn {
 
@@ -69,6 +70,21 @@ constexpr std::array<Vec3, 4> kIrisColors = {{
     {0.09f, 0.15f, 0.22f},
     {0.09f, 0.12f, 0.06f},
 }};
+
+/// Heights of children in the middle between girls and boys, rounded (WHO, "Growth reference data
+/// for 5-19 years", 2007) [m].
+constexpr std::array<Vec2, 6> kHeightOfYears = {
+    {{3, 0.955f}, {6, 1.155f}, {9, 1.33f}, {12, 1.50f}, {15, 1.65f}, {18, 1.70f}}};
+
+float height_of_years(float years) {
+    std::size_t i = 0;
+    while (i + 2 < kHeightOfYears.size() && kHeightOfYears[i + 1].x < years) {
+        ++i;
+    }
+    const Vec2& a = kHeightOfYears[i];
+    const Vec2& b = kHeightOfYears[i + 1];
+    return glm::mix(a.y, b.y, std::clamp((years - a.x) / (b.x - a.x), 0.0f, 1.0f));
+}
 
 class Chooser {
   public:
@@ -151,8 +167,18 @@ PersonLook choose_person(const PersonShape& shape) {
     look.sex = woman ? -features : features;
     const float mean_height = woman ? 1.65f : 1.775f;  // Gordon et al. (1989), rounded
     chosen.height = chooser.middling(shape.height, 0, mean_height - 0.12f, mean_height + 0.12f);
+    if (shape.years > 0) {
+        const float vary = chosen.height / mean_height;
+        chosen.height = shape.height > 0 ? shape.height : vary * height_of_years(shape.years);
+        look.infant = std::pow(std::clamp((17 - shape.years) / 13, 0.0f, 1.1f), 0.8f);
+        look.child = std::clamp((15 - shape.years) / 8, 0.0f, 1.0f);
+    } else {
+        look.child = 1 - glm::smoothstep(1.18f, 1.48f, chosen.height);
+        look.infant = 0.8f * look.child;
+    }
     chosen.build = chooser.middling(shape.build, -2, -0.9f, 0.9f);
     chosen.age = chooser.number(shape.age, -1, 0.0f, 0.85f);
+    chosen.age *= shape.age < 0 ? 1 - look.child : 1.0f;
     chosen.melanin = chooser.number(shape.melanin, -1, 0.0f, 0.95f);
     look.skin_color = skin_tone(chosen.melanin);
     look.asymmetry = chooser.number(0, 0, 0.1f, 0.5f);

@@ -9,6 +9,8 @@ namespace limn {
 /// One person: all parameters in their normal range.
 struct PersonLook {
     PersonShape shape;        ///< nothing left open; sex is Woman or Man
+    float child = 0.0f;       ///< 0: grown up, 1: a child of seven or less
+    float infant = 0.0f;      ///< 0: grown up, 1: a child of four
     float sex = 1.0f;         ///< -1: a woman's features, 1: a man's, as of HeadShape
     float asymmetry = 0.0f;   ///< of the face
     Vec3 skin_color = {};     ///< linear

@@ -125,22 +125,7 @@ SideJoint side_parent(std::size_t joint) {
     return kParents[joint];
 }
 
-/// A joint by its place in the order.
-struct JointPlace {
-    std::size_t own = 0;  ///< of its enumeration
-    int side = 0;         ///< +1 left, -1 right, 0 in the middle
-};
-
-JointPlace place_of(std::size_t joint) {
-    if (joint < kTrunkJoints) {
-        return {joint, 0};
-    }
-    const std::size_t pair = joint - kTrunkJoints;
-    return pair < 2 * kSideJoints ? JointPlace{pair / 2, pair % 2 == 0 ? 1 : -1}
-                                  : JointPlace{joint - 2 * kSideJoints, 0};
-}
-
-std::int32_t parent_of(const JointPlace& joint) {
+std::int32_t parent_of(const PersonJointPlace& joint) {
     if (joint.side == 0) {
         return joint.own < kTrunkJoints ? kTrunkParents[joint.own] : joint_index(PersonJoint::Head);
     }
@@ -153,7 +138,7 @@ std::int32_t parent_of(const JointPlace& joint) {
     return joint_index(side_parent(joint.own), joint.side);
 }
 
-std::string name_of(const JointPlace& joint) {
+std::string name_of(const PersonJointPlace& joint) {
     if (joint.side == 0) {
         return kMiddleNames[joint.own];
     }
@@ -251,6 +236,19 @@ void add_limits_of_leg(FreedomList& limits) {
 
 }  // namespace
 
+PersonJointPlace person_joint_place(std::size_t joint) {
+    if (joint < kTrunkJoints) {
+        return {joint, 0};
+    }
+    const std::size_t pair = joint - kTrunkJoints;
+    return pair < 2 * kSideJoints ? PersonJointPlace{pair / 2, pair % 2 == 0 ? 1 : -1}
+                                  : PersonJointPlace{joint - 2 * kSideJoints, 0};
+}
+
+std::int32_t person_joint_parent(std::size_t joint) {
+    return parent_of(person_joint_place(joint));
+}
+
 std::array<float, 3> finger_lengths(int finger) {
     constexpr std::array<std::array<float, 3>, 5> kLengths = {{
         {0.044f, 0.033f, 0.028f},
@@ -266,10 +264,11 @@ PersonFrame measure_person(const PersonShape& shape) {
     PersonFrame frame;
     frame.look = choose_person(shape);
     frame.scale = frame.look.shape.height / kReferenceHeight;
-    frame.child = 1 - glm::smoothstep(1.18f, 1.48f, frame.look.shape.height);
+    frame.child = frame.look.child;
+    frame.infant = frame.look.infant;
     frame.man = std::lerp(0.5f + 0.5f * frame.look.sex, 0.15f, frame.child);
     frame.build = frame.look.shape.build;
-    frame.head_scale = 1.0f / std::sqrt(frame.scale);
+    frame.head_scale = std::lerp(1.0f / std::sqrt(frame.scale), 1.0f, std::min(frame.infant, 1.0f));
     frame.head_origin = {0, kReferenceHeight - kCrown * frame.head_scale, 0.018f};
     const auto put = [&](PersonJoint joint, const Vec3& p) {
         frame.joints[joint_index(joint)] = p;
@@ -295,7 +294,7 @@ PersonFrame measure_person(const PersonShape& shape) {
 SkeletonData make_person_skeleton(const PersonFrame& frame) {
     SkeletonData skeleton;
     for (std::size_t joint = 0; joint < kPersonJoints; ++joint) {
-        const JointPlace place = place_of(joint);
+        const PersonJointPlace place = person_joint_place(joint);
         const std::int32_t parent = parent_of(place);
         const Vec3 origin = parent < 0 ? Vec3(0) : frame.joints[parent];
         add_rigid_joint(

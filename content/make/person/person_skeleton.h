@@ -88,7 +88,8 @@ struct PersonFrame {
     PersonLook look;
     float scale = 1;       ///< from the reference height to the person's
     float man = 1;         ///< 0: a woman's proportions, 1: a man's
-    float child = 0;       ///< 0: grown up, 1: a child of seven, by height
+    float child = 0;       ///< 0: grown up, 1: a child of seven, by height or years
+    float infant = 0;      ///< how far bones are from an adult's, 1: a child of four
     float build = 0;       ///< -1 .. 1
     float head_scale = 1;  ///< of the head in reference units; heads vary less than heights
     Vec3 head_origin = {};
@@ -104,12 +105,24 @@ struct PersonFrame {
 };
 inline constexpr float kReferenceHeight = 1.75f;
 
+/// A joint by its place in the order.
+struct PersonJointPlace {
+    std::size_t own = 0;  ///< of its enumeration
+    int side = 0;         ///< +1 left, -1 right, 0 in the middle
+};
+
+[[nodiscard]] PersonJointPlace person_joint_place(std::size_t joint);
+
+/// Index of the parent of a joint, -1 for the root.
+[[nodiscard]] std::int32_t person_joint_parent(std::size_t joint);
+
 /// Lengths of the three bones of a finger; 0: thumb, 1 .. 4: index to little finger [m].
 [[nodiscard]] std::array<float, 3> finger_lengths(int finger);
 
+/// With the proportions of an adult, also for children (person_growth.h).
 [[nodiscard]] PersonFrame measure_person(const PersonShape& shape);
 
-/// At the person's own height.
+/// At the person's own height. `frame`: a grown_frame.
 [[nodiscard]] SkeletonData make_person_skeleton(const PersonFrame& frame);
 
 }  // namespace limn
