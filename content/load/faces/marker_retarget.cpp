@@ -23,7 +23,7 @@ namespace limn {
 namespace {
 
 constexpr float kMaxChart = 0.03f;  ///< from a place to the nearest vertex, in texture coordinates
-constexpr float kRidge = 1e-3f;     ///< cost of weights, of the mean square motion of a shape
+constexpr float kRidge = 4e-3f;     ///< cost of weights, of the square motion of the largest shape
 constexpr int kSweeps = 40;         ///< of coordinate descent
 constexpr float kSettled = 1e-4f;   ///< change of weights in a sweep that ends it
 
@@ -294,8 +294,8 @@ Result<FaceMarkers> place_markers(
     for (const MorphTarget& morph : skin->morphs) {
         std::vector<Vec3>& moves = result.moves.emplace_back(vertices.size(), Vec3(0));
         result.shapes.push_back(morph.name);
-        if (!morph.drivers.empty()) {
-            continue;  // its weight follows those of others
+        if (!morph.drivers.empty() || morph.name.starts_with("viseme")) {
+            continue;  // its weight follows those of others, or it repeats what units show
         }
         for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
             for (std::size_t m = 0; m < vertices.size(); ++m) {
@@ -331,14 +331,14 @@ void fit_shape_weights(
     std::ranges::fill(weights, 0.0f);
     std::vector<Vec3> left(offsets.begin(), offsets.end());  // what is still to be explained
     std::vector<float> squares(face.shapes.size(), 0.0f);
-    float mean = 0.0f;
+    float most = 0.0f;
     for (std::size_t s = 0; s < face.shapes.size(); ++s) {
         for (std::size_t m = 0; m < left.size(); ++m) {
             squares[s] += glm::dot(face.moves[s][m], face.moves[s][m]);
         }
-        mean += squares[s] / static_cast<float>(face.shapes.size());
+        most = std::max(most, squares[s]);
     }
-    const float ridge = kRidge * mean;
+    const float ridge = kRidge * most;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         float largest = 0.0f;
         for (std::size_t s = 0; s < face.shapes.size(); ++s) {

@@ -56,7 +56,8 @@ struct FaceMarkers {
 retarget_markers(const MarkerMotion& motion, std::span<const Vec3> points, float gain = 1.0f);
 
 /// Weights of 0 .. 1, one per shape, for which the points move by `offsets` as closely as they can
-/// (coordinate descent from 0).
+/// (coordinate descent from 0). Weights have a cost, so that many shapes of small motion do not add
+/// up to a grimace; it damps these: markers of brows alone move them half.
 void fit_shape_weights(
     const FaceMarkers& face, std::span<const Vec3> offsets, std::span<float> weights);
 
