@@ -341,7 +341,7 @@ TEST_CASE(
 TEST_CASE(
     "speech library: recordings survive writing, and bad ones are rejected with their position"
     * technique("face.unit-generate")) {
-    SpeechLibrary library{kRate, record({"exactly one", "two"})};
+    SpeechLibrary library{kRate, {}, {}, record({"exactly one", "two"})};
     const std::string text = write_speech_library(library);
     const Result<SpeechLibrary> read = parse_speech_library(text, "x.json");
     REQUIRE(read.ok());
