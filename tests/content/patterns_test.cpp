@@ -576,6 +576,41 @@ TEST_CASE("patterns: metals are metal, rust is not, and everything else is no me
     }
 }
 
+TEST_CASE(
+    "patterns: half of a plain weave is warp, two thirds of a twill in diagonals, all of a knit") {
+    constexpr int kThreads = 12;
+    constexpr int kTexels = 10;  // of a thread
+    const auto warp_at = [](const PatternMaps& maps, int column, int row) {
+        const int x = (column % kThreads) * kTexels + kTexels / 2;
+        const int y = (row % kThreads) * kTexels + kTexels / 2;
+        return channel(maps.base_color, x, y, 0) > channel(maps.base_color, x, y, 1);
+    };
+    const auto weave = [](FabricWeave kind) {
+        return make_fabric(
+            {.image = {.size = kThreads * kTexels},
+             .weave = kind,
+             .threads = kThreads,
+             .warp_color = {1, 0, 0},
+             .weft_color = {0, 1, 0}});
+    };
+    const auto count = [&](const PatternMaps& maps) {
+        int warps = 0;
+        for (int i = 0; i < kThreads * kThreads; ++i) {
+            warps += warp_at(maps, i % kThreads, i / kThreads) ? 1 : 0;
+        }
+        return warps;
+    };
+    const PatternMaps twill = weave(FabricWeave::Twill);
+    CHECK(count(weave(FabricWeave::Plain)) == kThreads * kThreads / 2);
+    CHECK(count(twill) == kThreads * kThreads * 2 / 3);
+    CHECK(count(weave(FabricWeave::Knit)) == kThreads * kThreads);
+    for (int i = 0; i < kThreads * kThreads; ++i) {
+        const int column = i % kThreads;
+        const int row = i / kThreads;
+        CHECK(warp_at(twill, column, row) == warp_at(twill, column + 1, row + kThreads - 1));
+    }
+}
+
 TEST_CASE("patterns: kinds are found by name, and the error for a typo suggests the nearest") {
     REQUIRE(find_kind(pattern_kinds(), "marble") != nullptr);
     CHECK(find_kind(pattern_kinds(), "Marble") == nullptr);

@@ -285,18 +285,26 @@ PatternMaps make_rust(const RustPattern& pattern) {
 
 PatternMaps make_fabric(const FabricPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
-    const int threads = even(pattern.threads);
+    const bool twill = pattern.weave == FabricWeave::Twill;
+    const bool knit = pattern.weave == FabricWeave::Knit;
+    const int threads = twill ? (pattern.threads + 5) / 6 * 6 : even(pattern.threads);
     const float width = 1.0f / static_cast<float>(threads);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        // Plain weave: in every other square the thread along v lies on top. A thread is arched
-        // across its width and dips at the ends of its square.
+        // Plain weave: in every other square the thread along v lies on top; twill: in two of
+        // three, a square farther in each row. A thread is arched across its width and dips at the
+        // ends of its square. Knit: both legs of a loop lean to the middle of their column.
         const GridCell cell = find_grid_cell(uv * static_cast<float>(threads), 1);
-        const bool warp_on_top = (cell.column + cell.row) % 2 == 0;
-        const Vec2 off = 2.0f * cell.local - 1.0f;
+        const int diagonal = cell.column + cell.row;
+        const bool warp_on_top = knit || (twill ? diagonal % 3 != 0 : diagonal % 2 == 0);
+        Vec2 off = 2.0f * cell.local - 1.0f;
+        if (knit) {
+            const float loop = cell.local.y + 0.6f * std::abs(off.x);
+            off = {2.0f * std::abs(off.x) - 1.0f, 2.0f * (loop - std::floor(loop)) - 1.0f};
+        }
         const float across = warp_on_top ? off.x : off.y;
         const float along = warp_on_top ? off.y : off.x;
         const float bow = std::sqrt(std::max(1.0f - 0.92f * across * across, 0.0f));
-        const float dive = 1.0f - 0.75f * along * along;
+        const float dive = 1.0f - (twill && warp_on_top ? 0.3f : 0.75f) * along * along;
         const Vec2 fiber_cells =
             warp_on_top ? Vec2(6 * threads, threads) : Vec2(threads, 6 * threads);
         const float fibers = fbm(uv * fiber_cells, seed, IVec2(fiber_cells), 2, 0.6f);

@@ -4,6 +4,7 @@
 #include "content/make/patterns/pattern_maps.h"
 #include "ecs/reflect.h"
 
+#include <cstdint>
 #include <span>
 
 namespace limn {
@@ -181,8 +182,15 @@ LIMN_FIELDS(RustPattern) {
     LIMN_FIELD(rust, "fraction of the surface", "", 0, 1);
 }
 
+enum class FabricWeave : std::uint8_t {
+    Plain,
+    Twill,  ///< as denim: ribs run diagonally
+    Knit,   ///< columns of loops
+};
+
 struct FabricPattern {
     PatternSize image;
+    FabricWeave weave = FabricWeave::Plain;
     int threads = 48;
     Vec3 warp_color = {0.33f, 0.05f, 0.06f};
     Vec3 weft_color = {0.42f, 0.08f, 0.07f};
@@ -190,7 +198,9 @@ struct FabricPattern {
 
 LIMN_FIELDS(FabricPattern) {
     visit_fields(self.image, visit);
-    LIMN_FIELD(threads, "along each side; rounded up to even", "", 2, 512);
+    LIMN_FIELD(weave, .doc = "how threads cross", .values = "plain twill knit");
+    LIMN_FIELD(
+        threads, "along each side; rounded up to even, of twill to a multiple of 6", "", 2, 512);
     LIMN_FIELD(warp_color, .doc = "of the threads along v", .min = 0, .max = 1, .color = true);
     LIMN_FIELD(weft_color, .doc = "of the threads along u", .min = 0, .max = 1, .color = true);
 }

@@ -10,6 +10,12 @@
 
 namespace limn {
 
+namespace {
+
+constexpr float kFoldShade = 45.0f;  ///< per meter of a fold's height; by eye
+
+}  // namespace
+
 void fold_cloth(BodyMesh& mesh, const PersonFrame& frame) {
     std::vector<Vec3> normals(mesh.vertices.size(), Vec3(0));
     for (const BodyQuad& quad : mesh.quads) {
@@ -64,6 +70,9 @@ void fold_cloth(BodyMesh& mesh, const PersonFrame& frame) {
             }
         }
         const bool lifted = vertex.lift != Vec3(0);
+        // Light reaches the bottom of a fold less.
+        vertex.color =
+            glm::min(vertex.color * std::clamp(1 + kFoldShade * height, 0.72f, 1.1f), Vec3(1));
         vertex.position += height * (lifted ? vertex.lift : normalize_or(normals[i], Vec3(0)));
     }
 }
