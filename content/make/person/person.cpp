@@ -89,7 +89,7 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
         add_shirt_trims(trims, frame);
         // What has no trims affords more triangles.
         return finish_garment(
-            mesh, trims, frame, (trims.vertices.empty() ? 0.6f : 0.95f) * kThinning);
+            mesh, trims, frame, (trims.vertices.empty() ? 0.5f : 0.82f) * kThinning);
     case PersonPart::Trousers:
         add_trousers(mesh, frame);
         add_trouser_trims(trims, frame);
