@@ -31,7 +31,7 @@ const GltfScene& face() {
     return scene;
 }
 
-FaceMarkers places(const std::vector<MarkerPlace>& map = {}) {
+FaceMarkers places(const std::vector<FaceMarkerPlace>& map = {}) {
     const Result<FaceMarkers> placed = place_markers(face(), kNames, map, "take.map");
     REQUIRE(placed);
     return *placed;

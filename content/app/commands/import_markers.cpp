@@ -154,7 +154,7 @@ Status add_to_library(const ImportOptions& options, const MarkerMotion& motion) 
 
 Result<FaceMarkers> place_on_face(
     const std::string& face, std::span<const std::string> markers, const std::string& map) {
-    std::vector<MarkerPlace> places;
+    std::vector<FaceMarkerPlace> places;
     if (!map.empty()) {
         const std::string text = LIMN_TRY(read_text(map));
         places = LIMN_TRY(parse_marker_map(text, map));

@@ -187,8 +187,9 @@ float size_of(std::span<const Vec3> points) {
 
 }  // namespace
 
-Result<std::vector<MarkerPlace>> parse_marker_map(std::string_view text, const std::string& file) {
-    std::vector<MarkerPlace> places;
+Result<std::vector<FaceMarkerPlace>>
+parse_marker_map(std::string_view text, const std::string& file) {
+    std::vector<FaceMarkerPlace> places;
     for (std::size_t line = 1; !text.empty(); ++line) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         std::string row(text.substr(0, std::min(end, text.find('#'))));
@@ -203,7 +204,7 @@ Result<std::vector<MarkerPlace>> parse_marker_map(std::string_view text, const s
             continue;
         }
         const std::size_t equals = row.find('=');
-        MarkerPlace place;
+        FaceMarkerPlace place;
         place.line = line;
         place.marker = trimmed(row.substr(0, equals));
         place.place = equals == std::string::npos ? "" : trimmed(row.substr(equals + 1));
@@ -242,8 +243,8 @@ std::vector<std::string_view> place_names() {
 }
 
 Result<FaceMarkers> place_markers(
-    const GltfScene& face, std::span<const std::string> markers, std::span<const MarkerPlace> map,
-    const std::string& file) {
+    const GltfScene& face, std::span<const std::string> markers,
+    std::span<const FaceMarkerPlace> map, const std::string& file) {
     const MeshData* skin = find_skin(face);
     if (skin == nullptr) {
         return fail("{}: found no mesh with shapes", face.name);
@@ -252,7 +253,7 @@ Result<FaceMarkers> place_markers(
     const auto add_wrong = [&](const std::string& what) {
         wrong += (wrong.empty() ? "" : ", ") + what;
     };
-    for (const MarkerPlace& place : map) {
+    for (const FaceMarkerPlace& place : map) {
         if (std::ranges::find(markers, place.marker) == markers.end()) {
             add_wrong(
                 in_quotes(place.marker)
@@ -265,7 +266,7 @@ Result<FaceMarkers> place_markers(
     }
     std::vector<std::uint32_t> vertices;
     for (const std::string& marker : markers) {
-        const auto line = std::ranges::find(map, marker, &MarkerPlace::marker);
+        const auto line = std::ranges::find(map, marker, &FaceMarkerPlace::marker);
         const bool is_mapped = line != map.end();
         if (is_mapped && line->place.empty()) {
             vertices.push_back(label_vertices(std::span(&line->point, 1), skin->positions)[0]);

@@ -16,7 +16,7 @@ namespace limn {
 // size of the face. The face's own shapes are then weighted so that they follow the markers.
 
 /// A line of a map.
-struct MarkerPlace {
+struct FaceMarkerPlace {
     std::string marker;
     std::string place;     ///< a name, if it has no point
     Vec3 point = Vec3(0);  ///< in the space of the face's mesh [m]
@@ -26,7 +26,7 @@ struct MarkerPlace {
 /// Lines "marker = x y z" [m] or "marker = place", where a place is a marker of the built-in head,
 /// "mouth9_90_M", or one of place_names(); # begins a comment. Fails with "file:line: found X,
 /// expected Y".
-[[nodiscard]] Result<std::vector<MarkerPlace>>
+[[nodiscard]] Result<std::vector<FaceMarkerPlace>>
 parse_marker_map(std::string_view text, const std::string& file);
 
 /// Places that many sets of markers have, as "chin" or "browinner", of which some have a left and a
@@ -46,8 +46,8 @@ struct FaceMarkers {
 /// point is that of the nearest vertex of the skin. Fails with one line that lists wrong names and
 /// markers without a place, each with the nearest name. `file`: of the map, for messages.
 [[nodiscard]] Result<FaceMarkers> place_markers(
-    const GltfScene& face, std::span<const std::string> markers, std::span<const MarkerPlace> map,
-    const std::string& file);
+    const GltfScene& face, std::span<const std::string> markers,
+    std::span<const FaceMarkerPlace> map, const std::string& file);
 
 /// The motion, whose first frame is at rest, moved onto `points`, one per marker. Where these pairs
 /// determine no warp, as fewer than four or all in a plane, offsets are scaled by the ratio of the
