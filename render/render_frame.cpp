@@ -117,6 +117,7 @@ struct Accumulation {
     bool empty = true;
     SampleKind kind = SampleKind::Played;
     SampleMean mean = SampleMean::Light;
+    float compression = 0;  ///< exposure by which samples are compressed; 0: they are not
     std::vector<std::pair<std::string, gpu::Texture>> aovs;  ///< by name
 };
 
@@ -185,9 +186,8 @@ class Renderer {
     void draw_views();
     void add_to_sum(const World& world, const ViewData& view, float weight);
     /// The mean of the samples that were added.
-    TextureId mean_radiance(const World& world);
-    /// Exposure by which samples are compressed; 0: they are not.
-    [[nodiscard]] float compression(const World& world) const;
+    TextureId mean_radiance();
+    [[nodiscard]] float exposure_of_samples(const World& world) const;
     const gpu::Program* accumulation_program();
 
     RenderSettings settings_;
@@ -400,7 +400,7 @@ void Renderer::draw_views() {
         ViewSlot& slot = *views_[i + 1 == view_count_ ? 0 : i + 1];
         graph.begin_scope(slot.name);
         if (slot.data.is(kMeanView)) {
-            slot.data.radiance = mean_radiance(*frame_.world);
+            slot.data.radiance = mean_radiance();
         }
         for (std::size_t e = 0; e < effects_.size(); ++e) {
             if (slot.takes_part[e] != 0 && effects_[e].entry->draw != nullptr) {
@@ -469,18 +469,17 @@ FrameOutput Renderer::draw(
     return out;
 }
 
-float Renderer::compression(const World& world) const {
-    if (accumulation.mean == SampleMean::Light) {
-        return 0;
-    }
+float Renderer::exposure_of_samples(const World& world) const {
     const auto* const found = world.find_resource<Exposure>();
     const Exposure exposure = found != nullptr ? *found : Exposure{};
-    return std::exp2(exposure.ev + exposure.manual_ev);
+    const bool compresses =
+        accumulation.mean == SampleMean::Displayed && exposure.metering == Metering::Manual;
+    return compresses ? std::exp2(exposure.ev + exposure.manual_ev) : 0.0f;
 }
 
-TextureId Renderer::mean_radiance(const World& world) {
+TextureId Renderer::mean_radiance() {
     const TextureId sum = graph.import("accumulation", accumulation.sum);
-    const float factor = compression(world);
+    const float factor = accumulation.compression;
     if (factor == 0) {
         return sum;
     }
@@ -507,7 +506,10 @@ const gpu::Program* Renderer::accumulation_program() {
 
 void Renderer::add_to_sum(const World& world, const ViewData& view, float weight) {
     const TextureId target = graph.import("accumulation", accumulation.sum);
-    const float factor = compression(world);
+    if (accumulation.empty) {  // the same for all samples, whatever happens in the world
+        accumulation.compression = exposure_of_samples(world);
+    }
+    const float factor = accumulation.compression;
     gpu::PipelineState state = gpu::kFullscreenState;
     state.blend = gpu::kBlendAdd;
     add_fullscreen_pass(

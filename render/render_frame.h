@@ -68,7 +68,7 @@ enum class SampleMean : std::uint8_t {
     Light,  ///< radiance, as a camera's pixel collects it: the truth, and what an EXR stores
     /// What the display shows of it: edges of what is brighter than white are smooth. Samples are
     /// compressed by c / (1 + exposure * largest channel), and their mean is expanded again
-    /// (Karis, "High Quality Temporal Supersampling", 2014).
+    /// (Karis, "High Quality Temporal Supersampling", 2014). With a metered exposure: as Light.
     Displayed,
 };
 

@@ -95,10 +95,14 @@ Status read_markers(const JsonValue& json, const std::string& file, SpeechLibrar
     }
     for (const JsonValue& point : json["rest"].items) {
         Vec3 rest(0);
-        for (std::size_t k = 0; k < 3 && point.items.size() == 3; ++k) {
+        const bool numbers =
+            point.items.size() == 3 && std::ranges::all_of(point.items, [](const JsonValue& item) {
+                return item.kind == JsonKind::Number;
+            });
+        for (std::size_t k = 0; numbers && k < 3; ++k) {
             rest[static_cast<int>(k)] = static_cast<float>(point.items[k].number);
         }
-        if (point.items.size() != 3 || !is_finite(rest)) {
+        if (!numbers || !is_finite(rest)) {
             return found(point, file, "three numbers");
         }
         library.rest.push_back(rest);

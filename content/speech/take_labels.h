@@ -11,7 +11,7 @@ namespace limn {
 
 // When the sounds of a transcript are spoken in a recording (face.unit-generate): from labels that
 // someone made by ear, or roughly from the loudness of the sound and the length of the text. The
-// track covers the recording from 0 on, with silence at both ends.
+// track covers the recording from 0 on, with silence where the recording has some.
 
 /// Labels as Audacity exports them, a line each: start and end [s], and a word of the transcript
 /// or, if the first label is "sil", a sound, as "ae" (phonemes.h). Sounds of a word share its time

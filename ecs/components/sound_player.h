@@ -13,6 +13,8 @@ struct SoundPlayer {
     double start = 0;
     double every = 0;
     float gain = 1;
+
+    bool operator==(const SoundPlayer&) const = default;
 };
 
 LIMN_FIELDS(SoundPlayer) {

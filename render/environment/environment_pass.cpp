@@ -41,15 +41,18 @@ bool same_light(const Environment& a, const Environment& b) {
            && a.rotation == b.rotation && a.half_angle == b.half_angle && a.haze == b.haze;
 }
 
-/// The sun above the air: direction and irradiance, black without one.
-std::array<Vec3, 2> sun_above_air(const World& world) {
-    std::array<Vec3, 2> sun = {Vec3(0, 1, 0), Vec3(0)};
+/// The sun of an atmosphere: direction, irradiance above the air and on the ground; black without
+/// one.
+std::array<Vec3, 3> sun_of_atmosphere(const World& world) {
+    std::array<Vec3, 3> sun = {Vec3(0, 1, 0), Vec3(0), Vec3(0)};
     bool found = false;
     world.query<const Sunlight, const DirectionalLight, const WorldTransform>().each(
         [&](const Sunlight& above, const DirectionalLight& light, const WorldTransform& at) {
             const Vec3 toward = transform_vector(at.world, {0, 0, 1});
             if (!found && light.enabled && glm::length(toward) > 0) {
-                sun = {glm::normalize(toward), above.color * above.illuminance};
+                sun = {
+                    glm::normalize(toward), above.color * above.illuminance,
+                    light.color * light.illuminance};
                 found = true;
             }
         });
@@ -97,9 +100,9 @@ void EnvironmentEffect::collect(FrameData& frame) {
     }
     const auto& lights = frame.data.get<LightList>();
     const SkyKind sky = published.settings.sky;
-    const std::array<Vec3, 2> sun = sky == SkyKind::Atmosphere
-                                        ? sun_above_air(*frame.world)
-                                        : std::array{lights.sun_direction, Vec3(0)};
+    const std::array<Vec3, 3> sun =
+        sky == SkyKind::Atmosphere ? sun_of_atmosphere(*frame.world)
+                                   : std::array{lights.sun_direction, Vec3(0), lights.sun_color};
     published.changed = !current || !same_light(*current, published.settings)
                         || (sky == SkyKind::Atmosphere && sun != current_sun);
     if (published.changed) {
@@ -112,7 +115,7 @@ void EnvironmentEffect::collect(FrameData& frame) {
         current_sun = sun;
     }
     block.sun_direction = Vec4(sun[0], 0);
-    block.sun_color = Vec4(lights.sun_color, 0);
+    block.sun_color = Vec4(sun[2], 0);
     published.block = block;
     published.block_slice = frame.ring->push_value(block);
     if (sky == SkyKind::Panorama) {
@@ -125,7 +128,7 @@ void EnvironmentEffect::collect(FrameData& frame) {
 }
 
 void EnvironmentEffect::update_atmosphere(
-    const Environment& environment, const std::array<Vec3, 2>& sun) {
+    const Environment& environment, const std::array<Vec3, 3>& sun) {
     const AirSettings settings = {environment.haze, environment.ground};
     if (!air || !(air->settings == settings)) {
         air = make_air_tables(settings);

@@ -27,13 +27,13 @@ struct EnvironmentEffect {
     SkyView sky_view = {};
     gpu::Texture sky_table = {};           ///< sky_view
     std::optional<Environment> current;    ///< that the maps show
-    std::array<Vec3, 2> current_sun = {};  ///< direction and irradiance above the air
+    std::array<Vec3, 3> current_sun = {};  ///< sun_of_atmosphere
     layout::EnvironmentBlock block{};
 
     [[nodiscard]] static Result<EnvironmentEffect>
     create(gpu::Device& device, const RenderSettings& settings);
     void collect(FrameData& frame);
-    void update_atmosphere(const Environment& environment, const std::array<Vec3, 2>& sun);
+    void update_atmosphere(const Environment& environment, const std::array<Vec3, 3>& sun);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);

@@ -22,7 +22,7 @@ struct EnvironmentBlock {
     vec4 zenith;         // radiance, times the intensity; atmosphere: the sun's irradiance above the air. w: SkyKind
     vec4 horizon;        // w: intensity
     vec4 ground;
-    vec4 sun_direction;  // unit, toward the first directional light
+    vec4 sun_direction;  // unit, toward the first directional light; atmosphere: the first sunlight
     vec4 sun_color;      // its irradiance [lx]; black: no sun
     vec4 reflection;     // x: mip levels of the reflection maps, y: their size [px]
     StudioLamp lamps[kStudioLamps];

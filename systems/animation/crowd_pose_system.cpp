@@ -143,7 +143,8 @@ void choose_pose_rates(
 
 void choose_pose_joints(
     Query<const CrowdPose, const Skeleton, CrowdPoseState, Pose> crowds,
-    Query<const Deformed, const MeshInstance> meshes, Query<const JointAttachment> attachments,
+    Query<const Deformed, const MeshInstance> meshes,
+    Query<const Deformed, const ControlSurface> surfaces, Query<const JointAttachment> attachments,
     Res<const Assets> assets, Res<CrowdLibrary> library) {
     if (crowds.empty()) {
         return;
@@ -160,6 +161,10 @@ void choose_pose_joints(
         need(
             deformed.character,
             find_needed_joints(instance.mesh, deformed.skin, *assets, *library));
+    });
+    surfaces.each([&](const Deformed& deformed, const ControlSurface& surface) {
+        need(
+            deformed.character, find_needed_joints(surface.mesh, deformed.skin, *assets, *library));
     });
     attachments.each([&](const JointAttachment& attachment) {
         need(attachment.character, attachment.joint + 1u);

@@ -5,6 +5,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/crowd_pose.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
@@ -48,7 +49,8 @@ void choose_pose_rates(
 /// (pose_levels.h). A pose that lacks some gets them at once. After the meshes were chosen.
 void choose_pose_joints(
     Query<const CrowdPose, const Skeleton, CrowdPoseState, Pose> crowds,
-    Query<const Deformed, const MeshInstance> meshes, Query<const JointAttachment> attachments,
+    Query<const Deformed, const MeshInstance> meshes,
+    Query<const Deformed, const ControlSurface> surfaces, Query<const JointAttachment> attachments,
     Res<const Assets> assets, Res<CrowdLibrary> library);
 
 }  // namespace limn

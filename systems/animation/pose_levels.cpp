@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 // Techniques: engine.lod-mesh
@@ -30,10 +31,9 @@ void resize_pose(const SkeletonData& skeleton, std::size_t joints, Pose& pose) {
 
 std::size_t needed_joints(const SkinWeights& weights, const SkinData& skin) {
     std::size_t needed = 0;
-    for (const std::uint16_t joint : weights.joints) {
-        if (joint < skin.joints.size()) {
-            needed = std::max<std::size_t>(needed, skin.joints[joint] + 1u);
-        }
+    const std::size_t used = std::min(used_joints(weights), skin.joints.size());
+    for (const std::uint16_t joint : std::span(skin.joints).first(used)) {
+        needed = std::max<std::size_t>(needed, joint + 1u);
     }
     return needed;
 }

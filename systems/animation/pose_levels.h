@@ -17,7 +17,8 @@ namespace limn {
 /// parents, where the mesh of the coarser level had them.
 void resize_pose(const SkeletonData& skeleton, std::size_t joints, Pose& pose);
 
-/// How many of the first joints of the skeleton a mesh needs: up to the last one that has a weight.
+/// How many of the first joints of the skeleton a mesh needs: all of its skin up to the last one
+/// that has a weight, which the palette holds.
 [[nodiscard]] std::size_t needed_joints(const SkinWeights& weights, const SkinData& skin);
 
 }  // namespace limn

@@ -460,8 +460,9 @@ class CrowdStepper {
             return std::pair(
                 all_.skeletons[each.index].skeleton.index, all_.poses[each.index].joints.size());
         };
-        std::stable_sort(
-            due.begin(), due.end(), [&key](const Due& a, const Due& b) { return key(a) < key(b); });
+        std::sort(due.begin(), due.end(), [&key](const Due& a, const Due& b) {
+            return std::pair(key(a), a.index) < std::pair(key(b), b.index);
+        });
         for (std::size_t begin = 0; begin < due.size();) {
             std::size_t end = begin + 1;
             while (end < due.size() && key(due[end]) == key(due[begin])) {

@@ -70,15 +70,16 @@ double clipped(const test::Pixels& picture) {
 }  // namespace
 
 TEST_CASE(
-    "view: an EXR of limn render is shown as the PNG would be, unless options say otherwise") {
+    "view: an EXR is shown as a PNG with --average light is drawn, unless options say otherwise") {
     const TemporaryFolder folder;
     test::write_text(folder.file("ball.level.json"), R"({
         "resources": {"environment": {"sky": "gradient"}, "exposure": {"ev": -1.5, "curve": "neutral"}},
         "meshes": {"ball": {"make": "sphere", "segments": 24, "rings": 12}},
         "entities": [{"mesh_instance": {"mesh": "ball"}}]})");
     for (const char* file : {"a.exr", "direct.png"}) {
-        const ProgramRun run =
-            run_limn(folder, {"render", "ball.level.json", "-o", file, "--size", "64x36"});
+        const ProgramRun run = run_limn(
+            folder,
+            {"render", "ball.level.json", "-o", file, "--size", "64x36", "--average", "light"});
         CAPTURE(run.err);
         REQUIRE(run.exit_code == 0);
     }

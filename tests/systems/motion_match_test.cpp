@@ -174,7 +174,9 @@ TEST_CASE(
     // Walking, jogging and running [m/s]; time until it is slower than 0.1 m/s [s].
     const std::array<std::pair<float, float>, 3> limits = {
         {{1.3f, 1.15f}, {2.7f, 1.45f}, {4.0f, 1.8f}}};
-    for (const auto& [speed, limit] : limits) {
+    for (const std::pair<float, float>& each : limits) {
+        const float speed = each.first;
+        const float limit = each.second;
         for (int phase = 0; phase < 12; ++phase) {
             CAPTURE(speed);
             CAPTURE(phase);

@@ -43,7 +43,10 @@ Status run_import(const ImportOptions& options) {
     }
     for (const auto& [option, is_set] :
          {std::pair{"--head", options.head}, std::pair{"--onto", !options.onto.empty()},
-          std::pair{"--library", !options.library.empty()}}) {
+          std::pair{"--map", !options.map.empty()}, std::pair{"--patches", options.patches},
+          std::pair{"--library", !options.library.empty()},
+          std::pair{"--text", !options.text.empty()}, std::pair{"--sound", !options.sound.empty()},
+          std::pair{"--labels", !options.labels.empty()}}) {
         if (is_set) {
             return fail("{}: found {}, expected markers", option, options.kind);
         }

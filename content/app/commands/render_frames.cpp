@@ -2,6 +2,7 @@
 
 #include "content/app/commands/exposure_samples.h"
 #include "content/app/commands/image_file.h"
+#include "content/app/player/player_camera.h"
 #include "ecs/base/text.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/motion_blur.h"
@@ -48,6 +49,9 @@ struct FrameTimes {
 RenderView
 advance_to_view(Stage& stage, Entity camera, const RenderOptions& options, const FrameTimes& time) {
     const float alpha = advance_stage(stage, time.shown);
+    if (options.camera.empty()) {
+        camera = follow_active_camera(stage.world, camera);
+    }
     const double steps = (time.shown - time.previous) / stage_step(stage);
     return make_render_view(
         stage.world, camera,

@@ -23,6 +23,7 @@
 #include <span>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -276,7 +277,7 @@ Status run_speak(const SpeakOptions& options) {
         return speak_file(options);
     }
     SpeakOptions own = options;
-    own.face = std::filesystem::path(options.out).replace_extension(".face.glb").string();
+    own.face = fmt::format("{}.{}.glb", options.out, getpid());  // no one's file
     const GltfScene head = LIMN_TRY(make_head_scene(options.face));
     LIMN_TRY(save_glb(own.face, head));
     Status spoken = speak_file(own);

@@ -34,6 +34,7 @@ Result<RenderOptions> render_options_of(const FarmJob& job) {
     options.size = job.size;
     options.fps = job.fps;
     options.frames = FrameRange{job.frames.front(), job.frames.back()};
+    options.out = frame_path(job, job.frames.front());  // PNG or EXR
     options.quiet = true;
     return options;
 }

@@ -66,8 +66,8 @@ Status play_headless(const PlayOptions& options, bool no_display) {
              .height = options.size.y,
              .alpha = alpha,
              .previous_alpha = alpha - 1.0f});
-        const FrameOutput frame =
-            render_accumulated(*headless->renderer, stage.world, view, kHeadlessSamples);
+        const FrameOutput frame = render_accumulated(
+            *headless->renderer, stage.world, view, kHeadlessSamples, {}, SampleMean::Displayed);
         const std::string path =
             (std::filesystem::path(folder) / numbered_path("picture_%04d.png", i)).string();
         const Status written = write_image_file(path, frame);

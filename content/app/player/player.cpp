@@ -135,6 +135,7 @@ Status Player::run() {
             handle_key(press);
         }
         if (window_->framebuffer_size().x < 1 || window_->framebuffer_size().y < 1) {
+            (void)sound_.update(0, false);
             window_->wait_events(0.1);  // minimized: nothing to draw on
             last = Clock::now();
             continue;
@@ -198,6 +199,7 @@ Status Player::run() {
             until_shader_check_ = kShaderInterval;
             reload_shaders(false);
             follow_level_files();
+            follow_sounds();
         }
         simulate(dt, input);
         draw_frame(dt, input);

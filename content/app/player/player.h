@@ -23,6 +23,7 @@
 #include "content/game/wrinkle_trial.h"
 #include "content/load/made_assets.h"
 #include "ecs/components/input.h"
+#include "ecs/components/sound_player.h"
 #include "render/gpu/device.h"
 #include "render/render_frame.h"
 #include "render/render_view.h"
@@ -72,6 +73,7 @@ class Player {
     /// the show.
     [[nodiscard]] Status load(const std::string& scene, const std::string& show = {});
     void draw_loading(const std::string& scene, const std::string& step = {});
+    void follow_sounds();
     void warm_up_level();
     void load_or_report(const std::string& scene, const std::string& show = {});
     void load_neighbor(int offset);
@@ -185,11 +187,13 @@ class Player {
     double until_pick_ = 0.0;          ///< [s] until the distance ahead is measured again
     float ahead_ = INFINITY;           ///< distance to what the camera looks at [m]
     SoundOutput sound_;
-    double real_seconds_ = 0.0;       ///< of the window in which rate_ is measured
-    double simulated_seconds_ = 0.0;  ///< likewise
-    double rate_ = 1.0;               ///< simulated seconds per real second
-    bool gamepad_click_ = false;      ///< A was down in the last frame
-    bool pointer_taken_ = false;      ///< by an editor
+    std::vector<SoundPlayer> sound_players_;  ///< that sound_ plays
+    std::string sound_scene_;                 ///< whose they are
+    double real_seconds_ = 0.0;               ///< of the window in which rate_ is measured
+    double simulated_seconds_ = 0.0;          ///< likewise
+    double rate_ = 1.0;                       ///< simulated seconds per real second
+    bool gamepad_click_ = false;              ///< A was down in the last frame
+    bool pointer_taken_ = false;              ///< by an editor
     bool paused_ = false;
     bool step_once_ = false;
     DetailCosts detail_costs_;

@@ -14,6 +14,7 @@
 namespace limn {
 
 Status Player::load(const std::string& scene, const std::string& show) {
+    (void)sound_.update(0, false);
     draw_loading(scene);
     std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(
         scene,
@@ -61,9 +62,21 @@ Status Player::load(const std::string& scene, const std::string& show) {
     model_panel_.open =
         stage_->scene.model && ModelPanel::has_choices(stage_->world, level_cameras());
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
-    sound_.set_sounds(stage_sounds(*stage_));
+    follow_sounds();
     warm_up_level();
     return Done{};
+}
+
+/// Takes over the scene's sounds where they are others than before.
+void Player::follow_sounds() {
+    std::vector<SoundPlayer> players;
+    stage_->world.query<const SoundPlayer>().each(
+        [&](const SoundPlayer& player) { players.push_back(player); });
+    if (players != sound_players_ || sound_scene_ != stage_->scene.path) {
+        sound_players_ = std::move(players);
+        sound_scene_ = stage_->scene.path;
+        sound_.set_sounds(stage_sounds(*stage_));
+    }
 }
 
 /// Compiles the level's shaders, so that no frame has to.

@@ -131,6 +131,9 @@ double SoundOutput::update(double time, bool running) {
             continue;
         }
         is_heard_ = true;
+        if (state != AL_PLAYING && sounds_[i].data.duration() - *wanted < kLargestLag) {
+            continue;  // it has ended, a little before the scene
+        }
         ALfloat offset = 0;
         alGetSourcef(source, AL_SEC_OFFSET, &offset);
         const std::optional<double> found =

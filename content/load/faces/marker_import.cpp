@@ -196,6 +196,9 @@ std::vector<std::uint32_t> triangulate_markers(std::span<const Vec3> positions) 
 Result<MarkerMotion> isolate_face(const std::string& name, MarkerMotion motion) {
     Take take = LIMN_TRY(make_take(name, std::move(motion)));
     fill_gaps(take.face, take.rest);
+    if (take.face.markers() < 3) {
+        return fail("{}: found {} markers of the face, expected three", name, take.face.markers());
+    }
     return std::move(take.face);
 }
 

@@ -172,7 +172,7 @@ std::optional<std::uint32_t> vertex_at(const MeshData& skin, const Vec2& chart) 
     return nearest;
 }
 
-/// Root of the mean squared distance from the mean of some points, the first `count`.
+/// Root of the mean squared distance from the mean of some points.
 float size_of(std::span<const Vec3> points) {
     Vec3 mean(0);
     for (const Vec3& p : points) {

@@ -3,6 +3,7 @@
 #include "content/bake/tangents.h"
 #include "content/make/models/keep_triangles.h"
 #include "content/make/models/merge_joints.h"
+#include "ecs/base/log.h"
 
 #include <meshoptimizer.h>
 
@@ -124,9 +125,14 @@ MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets) {
     shape.merge ? merge_mesh(mesh, triangles) : simplify_mesh(mesh, triangles);
     const auto skeleton = std::ranges::find(assets.skeletons, mesh.name, &SkeletonData::name);
     const auto skin = std::ranges::find(assets.skins, mesh.name, &SkinData::name);
-    if (shape.joints > 0 && !mesh.skin.empty() && skeleton != assets.skeletons.end()
-        && skin != assets.skins.end()) {
-        merge_joints(mesh.skin, *skin, *skeleton, static_cast<std::size_t>(shape.joints));
+    if (shape.joints > 0 && !mesh.skin.empty()) {
+        if (skeleton != assets.skeletons.end() && skin != assets.skins.end()) {
+            merge_joints(mesh.skin, *skin, *skeleton, static_cast<std::size_t>(shape.joints));
+        } else {
+            log_warn(
+                "simplified: joints has no effect on {}, which has no skeleton of its name",
+                mesh.name);
+        }
     }
     update_bounds(mesh);
     return mesh;

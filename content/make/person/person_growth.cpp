@@ -11,8 +11,6 @@ namespace limn {
 
 namespace {
 
-constexpr float kCrownHeight = 0.2f;  ///< of an adult's head above its joint [m]
-
 /// Scale by `across` and, in the direction of `along`, by `length`.
 Mat3 bone_scale(float across, float length, const Vec3& along) {
     return Mat3(across) + (length - across) * glm::outerProduct(along, along);
