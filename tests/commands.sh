@@ -72,11 +72,11 @@ echo '{"face": "face.glb", "degree": 1, "size": 16, "poses": [{"image": "a.png",
     {"image": "b.png", "shapes": [{"name": "browDown_L"}]}, {"image": "before.png", "shapes": [{"name": "jawOpen"}]}]}' \
     >"$folder/poses.json"
 {
-    printf 'PathFileType\t4\t(X/Y/Z)\ttake.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n50\t50\t2\t7\tmm\n'
+    printf 'PathFileType\t4\t(X/Y/Z)\ttake.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n50\t50\t60\t7\tmm\n'
     printf 'Frame#\tTime\thead1\t\t\thead2\t\t\thead3\t\t\tskin24_4_L\t\t\tmouth9_270_M\t\t\tskin60_0_M\t\t\tskin39_16_L\t\t\n\t\tX1\tY1\tZ1\n\n'
-    for frame in 1 2; do
-        printf '%s\t0.0%s' $frame $frame
-        printf '\t%s' -70 100 0 70 100 0 0 150 -50 20 60 90 0 -3$frame 100 0 -70 90 50 0 70
+    for frame in {1..60}; do
+        printf '%s\t%s.%02d' $frame $((frame / 50)) $((frame % 50 * 2))
+        printf '\t%s' -70 100 0 70 100 0 0 150 -50 20 60 90 0 -3$((frame % 9)) 100 0 -70 90 50 0 70
         echo
     done
 } >"$folder/take.trc"
@@ -108,6 +108,10 @@ for name in walk.glb person.glb body.glb; do
 done
 echo '{"markers": [{"marker": "head1", "joint": "Head", "at": [-0.07, 1.6, 0]}, {"marker": "head2", "joint": "Head",
     "at": [0.07, 1.6, 0]}, {"marker": "head3", "joint": "Head", "at": [0, 1.65, -0.05]}]}' >"$folder/markers.json"
+
+ffmpeg -v error -f lavfi -i sine=d=0.6 -af adelay=300,apad=pad_dur=0.3 "$folder/take.wav" || exit 1
+echo 'skin24_4_L = 0.03 0.05 0.07' >"$folder/take.map"
+"$limn" export head -o "$folder/head.glb" >/dev/null || exit 1
 
 if [ -d ../shared/assets ]; then
     (cd "$folder" && "$limn" import ict-facekit ICT-FaceKit -o face.glb \

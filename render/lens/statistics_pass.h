@@ -34,7 +34,8 @@ struct StatisticsPass {
 struct MeasureRequest {
     float key = 0.0f;    ///< log-average after exposure; 0: scale 1, not metered
     float blend = 1.0f;  ///< adaptation blend factor, 1 = at once
-    /// Luminance range of the adaptation. A lower end below kLogDelta also makes darker pixels count.
+    /// Luminance range of the adaptation. A lower end below kLogDelta also makes darker pixels
+    /// count.
     Vec2 adaptation_range = {1e-4f, 65504.0f};
     bool histogram = false;        ///< for the clipped range; costs more than the rest together
     float clipped_share = 0.001f;  ///< of the pixels, at either end

@@ -53,7 +53,7 @@ TEST_CASE(
     const MeshData kept = make_simplified({.mesh = {0}, .triangles = 150}, assets);
     CHECK(kept.indices.size() > 3 * 1000);  // closed parts stay closed
     CHECK_FALSE(joins_legs(person));
-    for (const int triangles : {600, 150, 60}) {
+    for (const int triangles : {600, 150, 100}) {
         const MeshData merged =
             make_simplified({.mesh = {0}, .triangles = triangles, .merge = true}, assets);
         CAPTURE(triangles);

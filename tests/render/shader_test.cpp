@@ -241,8 +241,9 @@ void add_units(const std::string& path, std::map<int, std::string>& names) {
     const std::regex declaration(R"(binding = (k\w+)[^)]*\) uniform \w*sampler\w+ (\w+))");
     for (std::sregex_iterator it(source->text.begin(), source->text.end(), declaration), end;
          it != end; ++it) {
-        if ((*it)[2] == "sky_cube" || ((*it)[2] == "shadow_masks" && unmasked)) {
-            continue;  // the cube is only for the sky, which has no surfaces
+        if ((*it)[2] == "sky_cube" || (*it)[2] == "sky_view"
+            || ((*it)[2] == "shadow_masks" && unmasked)) {
+            continue;  // those are only for the sky, which has no surfaces
         }
         CAPTURE(path);
         REQUIRE(numbers.contains((*it)[1]));

@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(
     CHECK(deform_positions(
         mesh, world.get<Deformed>(tube), nullptr, nullptr, nullptr, nullptr, source,
         surface_shape(&state, state.patches)));
-    CHECK(farthest(source, positions) == 0.0f);
+    CHECK(farthest(source, positions) <= 1e-7f);  // the sum of the weights is rounded
 }
 
 TEST_CASE_FIXTURE(

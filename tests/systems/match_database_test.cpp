@@ -163,7 +163,7 @@ TEST_CASE("match takes: feet do not move in their contacts, and they have what i
         }
     }
     CHECK(slide < 0.003f);  // the whole way in a contact: of the walk itself
-    CHECK(lowest > 0.83f * body.hips_place.y - 1e-3f);
+    CHECK(lowest > 0.79f * body.hips_place.y - 1e-3f);  // as it brakes
     CHECK(length > 120);
     CHECK(fastest > 3.5f);
     CHECK(sharpest > 1.8f);

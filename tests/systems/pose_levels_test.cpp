@@ -31,14 +31,14 @@ namespace {
 constexpr std::size_t kJoints = 30;
 constexpr std::uint16_t kNeeds[] = {8, 17, kJoints};  ///< of the meshes, from coarse to fine
 
-/// Triangles that need as many joints of a skin that lists them backwards.
+/// Triangles that need as many joints of a skin that lists them in their order.
 MeshData make_cloth(std::uint16_t joints) {
     MeshData mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.normals.assign(3, Vec3(0, 0, 1));
     mesh.indices = {0, 1, 2};
-    const auto last = static_cast<std::uint16_t>(kJoints - joints);
-    mesh.skin = {{0, 1, 2, 3}, {last, kJoints - 1, last}, {1, 1, 1}};
+    const auto last = static_cast<std::uint16_t>(joints - 1);
+    mesh.skin = {{0, 1, 2, 3}, {last, 0, last}, {1, 1, 1}};
     return mesh;
 }
 
@@ -53,8 +53,8 @@ Assets make_assets() {
         assets.clips.push_back(clip);
     }
     SkinData skin;
-    for (std::size_t j = kJoints; j-- > 0;) {
-        skin.joints.push_back(static_cast<std::uint16_t>(j));
+    for (std::uint16_t j = 0; j < kJoints; ++j) {
+        skin.joints.push_back(j);
     }
     skin.joint_from_mesh.resize(kJoints);
     assets.skins.push_back(skin);
@@ -226,6 +226,15 @@ TEST_CASE("pose levels: whoever comes nearer never lacks a joint, and its veloci
         last = pose.joints.size();
     }
     CHECK(changes >= 4);
+}
+
+TEST_CASE("pose levels: a skin in another order needs what stands before the last joint in use") {
+    SkinData skin;
+    skin.joints = {4, 29, 7, 2};
+    CHECK(needed_joints({{0, 1}, {0}, {1}}, skin) == 5);
+    CHECK(needed_joints({{0, 1}, {2}, {1}}, skin) == 30);
+    CHECK(needed_joints({{0, 1}, {9}, {1}}, skin) == 30);  // beyond the skin
+    CHECK(needed_joints({}, skin) == 0);
 }
 
 TEST_CASE("pose levels: what is attached to a joint keeps it") {

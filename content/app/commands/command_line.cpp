@@ -470,7 +470,7 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "  limn import markers take.trc -o take.glb\n"
         "  limn import markers take.trc --head -o take.glb\n"
         "  limn import markers take.trc --onto face.glb -o acted.glb\n"
-        "  limn import markers take.trc -o take.glb --library clock.json --text \"It is one.\"\n"
+        "  limn import markers take.trc -o take.glb --library said.json --text \"It is one.\"\n"
         "  limn play face.glb");
     return {app, [&options] { return run_import(options); }};
 }

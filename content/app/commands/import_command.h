@@ -11,7 +11,7 @@ namespace limn {
 // Shown by `limn import markers take.trc -o take.glb`: face.head-stabilise, face.mocap-drive
 // Shown by `limn import markers take.trc --onto face.glb -o acted.glb`: face.retarget-fit,
 //     face.retarget-warp
-// Shown by `limn import markers take.trc -o take.glb --library clock.json --text "It is one."`:
+// Shown by `limn import markers take.trc -o take.glb --library said.json --text "It is one."`:
 //     face.unit-generate
 // Shown by `limn import bvh walk.bvh -o walk.glb`: char.bvh-format, char.skeleton-hierarchy
 // Shown by `limn import bvh walk.bvh -o walk.glb --set rate=100`: char.mocap-rate

@@ -24,7 +24,7 @@ struct CharacterView {
     Entity entity{};
     const SkeletonData* skeleton = nullptr;
     Affine world_from_character{};
-    std::span<const Affine> joints;  ///< character_from_joint, after the last step
+    std::vector<Affine> joints;      ///< character_from_joint, after the last step
     const ClipData* clip = nullptr;  ///< null: it is not known what it will do
     float time = 0.0f;               ///< in the clip [s]
     float speed = 0.0f;              ///< of the clip
