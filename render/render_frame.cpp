@@ -1,8 +1,10 @@
 #include "render/render_frame.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/curvature_view.h"
+#include "ecs/components/mesh_levels.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
@@ -262,12 +264,23 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
     frame_.warm_up = items_.sampled = true;
     begin(kCameraView, world, view);
     const std::vector<RenderView> views = find_warm_up_views(world, view);
-    const int rounds = any_light_off(world) ? 2 : 1;
-    const int total = rounds * static_cast<int>(views.size());
+    struct Round {
+        bool all_lights;
+        bool finest;
+    };
+    std::vector<Round> rounds = {{false, false}};
+    if (any_light_off(world)) {
+        rounds.push_back({true, false});
+    }
+    if (world.query<const MeshLevels, const Deformed>().count() > 0) {
+        rounds.push_back({true, true});
+    }
+    const int total = static_cast<int>(rounds.size() * views.size());
     int done = 0;
-    for (int round = 0; round < rounds; ++round) {
+    for (const Round& round : rounds) {
         forget_frames();  // so that effects request all their programs, and draw their caches
-        frame_.all_lights = round == 1;
+        frame_.all_lights = round.all_lights;
+        shapes_.finest = round.finest;
         for (const RenderView& one : views) {
             if (progress) {
                 progress(done++, total);
@@ -275,7 +288,7 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
             draw(kCameraView, world, make_small(one), {});
         }
     }
-    frame_.warm_up = items_.sampled = frame_.all_lights = false;
+    frame_.warm_up = items_.sampled = frame_.all_lights = shapes_.finest = false;
     settings_.environment_size = environment_size;
     forget_frames();
     return static_cast<int>(device.shaders().loaded_count());

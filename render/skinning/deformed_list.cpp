@@ -3,6 +3,7 @@
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
+#include "ecs/components/mesh_levels.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/vertex_offset.h"
 #include "ecs/components/wrinkle.h"
@@ -317,18 +318,22 @@ void DeformedList::update(
     }
     world.query<const Deformed, const MeshInstance, With<WorldTransform>>().each(
         [&](Entity entity, const Deformed& settings, const MeshInstance& instance) {
-            const std::uint32_t mesh = instance.mesh.index;
+            const auto* levels = finest ? world.find<MeshLevels>(entity) : nullptr;
+            const MeshId drawn = levels != nullptr && !levels->meshes.empty()
+                                     ? levels->meshes.back()
+                                     : instance.mesh;
+            const std::uint32_t mesh = drawn.index;
             if (mesh >= meshes.meshes().size() || meshes.meshes()[mesh].index_count == 0) {
                 return;
             }
             Entry& entry = entry_of(entity);
             const std::uint32_t version = meshes.meshes()[mesh].version;
-            if (entry.mesh != instance.mesh || entry.mesh_version != version) {
+            if (entry.mesh != drawn || entry.mesh_version != version) {
                 release(entry);
                 entry.evaluated = 0;
             }
             entry.found = true;
-            entry.mesh = instance.mesh;
+            entry.mesh = drawn;
             entry.mesh_version = version;
             entry.settings = settings;
             std::string fault;

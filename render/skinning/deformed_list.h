@@ -74,6 +74,9 @@ class DeformedList {
   public:
     static constexpr std::uint32_t kNone = ~0u;
 
+    /// Deform the finest mesh of each MeshLevels, to compile what draws it.
+    bool finest = false;
+
     /// `storage_bytes`: maximum size of a storage block.
     explicit DeformedList(std::size_t storage_bytes) : storage_bytes_(storage_bytes) {}
 
