@@ -5,8 +5,10 @@
 
 namespace limn {
 
-// Techniques: light.height-fog
+// Techniques: light.height-fog, light.airlight
 // Source of light.height-fog: Quílez, "Better fog", 2010; Henyey and Greenstein 1941
+// Source of light.airlight: Kulla and Fajardo, "Importance sampling techniques for path tracing in
+// participating media", 2012
 
 /// Resource: fog that thins with height, extinction = density exp(-(y - base) / scale_height), and
 /// scatters what it takes. It lies in front of surfaces, water, glass, particles and the sky.
@@ -17,6 +19,7 @@ struct HeightFog {
     Vec3 ambient = {0.5f, 0.55f, 0.6f};
     float sun = 1.0f;
     float forward = 0.6f;
+    float lamps = 0.0f;
 };
 
 LIMN_FIELDS(HeightFog) {
@@ -33,6 +36,11 @@ LIMN_FIELDS(HeightFog) {
     LIMN_FIELD(
         forward, "how much the sun's is scattered on: 0 to all sides, 0.6 haze, 0.85 dense fog", "",
         0, 0.95);
+    LIMN_FIELD(
+        lamps,
+        "factor on the light that it scatters from the 16 strongest point lights and spots: halos "
+        "and beams; their shadows are left out",
+        "", 0, 10);
 }
 
 }  // namespace limn
