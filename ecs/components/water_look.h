@@ -7,7 +7,10 @@
 
 namespace limn {
 
-// Techniques: water.fresnel-approx, water.reflection-refraction-maps, water.refraction-map
+// Techniques: water.fresnel-approx, water.reflection-refraction-maps, water.refraction-map,
+//     water.whitecaps
+// Source of water.whitecaps: Tessendorf, "Simulating ocean water", 2001: foam where the Jacobian is
+// small
 
 /// Fresnel reflectance of the surface seen from above (ecs/base/optics.h). From below, with total
 /// internal reflection, it is always exact.
@@ -40,6 +43,8 @@ struct WaterLook {
     float map_scale = 0.5f;
     ImageId floor_map{};  ///< for Floor, where depth > 0; all waters share one
     float floor_tile = 2;
+    float foam_below = -1;
+    float foam_decay = 1.5f;
 };
 
 LIMN_FIELDS(WaterLook) {
@@ -57,6 +62,12 @@ LIMN_FIELDS(WaterLook) {
         map_scale, "resolution of planar as a fraction of the frame's, per side", "", 0.1, 1);
     LIMN_FIELD(floor_map, "color map of the bottom");
     LIMN_FIELD(floor_tile, "side length of a tile of the floor map", "m", 0.01, 1e4);
+    LIMN_FIELD(
+        foam_below,
+        "whitecaps where the Jacobian of the displacement by closed-form waves is below this; -1: "
+        "none. An ocean has its foam_threshold",
+        "", -1, 1);
+    LIMN_FIELD(foam_decay, "time constant of the decay of whitecaps to 1/e", "s", 0.01, 100);
 }
 
 }  // namespace limn

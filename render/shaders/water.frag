@@ -12,7 +12,8 @@
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"
 #include "water_gpu.h"
-#ifdef OCEAN
+#if defined(OCEAN) || defined(CRESTS)
+#define FOAM
 #include "lib/water_foam.glsl"
 #endif
 #include "lib/water_reflection.glsl"
@@ -40,6 +41,9 @@ void main() {
     bend.by_x += visible.by_x;
     bend.by_z += visible.by_z;
     bend.variance += visible.variance;
+#ifdef CRESTS
+    bend.foam = min(bend.foam + crest_foam(water, visible.rest, bend), 1.0);
+#endif
     add_detail(bend, visible.body, visible.rest, visible.footprint);
     vec3 up = water_to_world(water, water_normal(bend));
     float roughness = sqrt(sqrt(kSmooth + bend.variance));  // a normal distribution's alpha is the root of this
@@ -121,11 +125,11 @@ void main() {
         mirror = hit.path < kInfiniteDistance ? mix(scattered, hit.color, exp(-extinction * hit.path)) : around;
     }
 #endif
-#ifdef OCEAN
+#ifdef FOAM
     refracted = above ? with_bubbles(refracted, bend.foam, falling, extinction) : refracted;
 #endif
     vec3 color = mix(refracted, mirror, reflectance) + glints;
-#ifdef OCEAN
+#ifdef FOAM
     color = above ? with_foam(color, bend.foam, visible.rest, visible.footprint, falling) : color;
 #endif
     radiance = vec4(storable(color), 1.0);

@@ -19,6 +19,7 @@ struct WaterRecord {
                       // of planar reflection and refraction by waves
     vec4 patches;     // 1 / side of each patch [1/m]
     vec4 variance;    // slope variance of each patch
+    vec4 foam;        // Jacobian below which waves are white, -1 = none; 1 / time constant of the foam [1/s]
 };
 
 struct WaveLineRecord {
@@ -37,7 +38,7 @@ const int kHighestTile = 32;    // side of the tiles of water_highest.frag [px]
 const float kNoHeight = 1e9;
 const int kWaterGrid = 8;  // cells along a side of a patch; even
 
-const uint kWaterTexels = 10u;
+const uint kWaterTexels = 11u;
 const uint kWaveLineTexels = 2u;
 const uint kWaveRingTexels = 3u;
 

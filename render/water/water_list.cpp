@@ -185,6 +185,7 @@ void add_body(
         by_height ? heights_of(margin.y + margin_of(body.table).y, ripples) : Vec2(0));
 
     list.looks = list.looks || pack_look(look) != 0;
+    list.crests = list.crests || look.foam_below > -1;
     list.planar = list.planar || look.reflection == WaterReflection::Planar;
     list.bent = list.bent || look.refraction == WaterRefraction::Traced;
     list.traced = list.traced || look.reflection == WaterReflection::ScreenSpace;
@@ -205,7 +206,8 @@ void add_body(
          .rippling = {0, 0, at.now, at.previous},
          .ocean = {0, 0, 0, look.distortion},
          .patches = Vec4(0),
-         .variance = Vec4(0)});
+         .variance = Vec4(0),
+         .foam = {look.foam_below, 1 / look.foam_decay, 0, 0}});
 }
 
 /// Sorts flat patches, which no wave displaces, behind the others; both keep their order.
@@ -282,7 +284,7 @@ void build_water_list(
     list.caustics.clear();
     list.heights.clear();
     list.details.clear();
-    list.looks = list.planar = list.traced = list.bent = false;
+    list.looks = list.crests = list.planar = list.traced = list.bent = false;
     list.floor = nullptr;
     for (std::size_t i = 0; i < sources.bodies.size(); ++i) {
         const WaterSources::Body& body = sources.bodies[i];

@@ -98,6 +98,7 @@ Variant light_variant(const ViewData& view, const WaterSurfaces& waters) {
     variant.add("SHADING_LOBE", kLobe);
     variant.add_if(view.attributes, "ATTRIBUTES");
     variant.add_if(waters.any_seas(), "OCEAN");
+    variant.add_if(list.crests, "CRESTS");
     variant.add_if(list.looks, "LOOKS");
     variant.add_if(list.planar, "PLANAR");
     variant.add_if(list.visible_from_below, "FROM_BELOW");
@@ -341,7 +342,7 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
             device.use(gpu::Pipeline{program, kWhereLobe});
             bind_lighting(context, view);
             bind_water_surfaces(device, *waters);
-            if (waters->any_seas()) {
+            if (waters->any_seas() || waters->list.crests) {
                 bind_foam(device, *this);
             }
             if (waters->list.details.needed) {

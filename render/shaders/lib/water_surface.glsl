@@ -26,7 +26,8 @@ WaterRecord water_record(int body) {
         texelFetch(waters, first + 6),
         texelFetch(waters, first + 7),
         texelFetch(waters, first + 8),
-        texelFetch(waters, first + 9));
+        texelFetch(waters, first + 9),
+        texelFetch(waters, first + 10));
 }
 
 vec3 water_to_world(WaterRecord water, vec3 v) {

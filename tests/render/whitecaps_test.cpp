@@ -1,0 +1,108 @@
+#include "ecs/components/time.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_look.h"
+#include "ecs/components/water_waves.h"
+#include "systems/water/water_wave_table.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
+
+#include <cmath>
+#include <vector>
+
+namespace limn::test::whitecaps_test {
+namespace {
+
+constexpr float kLength = 16;  // of the wave [m]
+constexpr float kSteepness = 0.75f;
+constexpr int kSize = 96;
+constexpr float kHeight = 12;         // of the camera, which looks down on 24 m of sea [m]
+constexpr float kFoam = 0.7f * 0.5f;  // thick foam under a uniform sky of 0.5
+
+/// One trochoid wave along +x on water that mirrors 2 % and lets nothing through, from above.
+struct Sea : Scene {
+    Sea() {
+        world.insert_resource(FrameTime{});
+        world.insert_resource(Environment{
+            .sky = SkyKind::Uniform,
+            .zenith = Vec3(0.5f),
+            .horizon = Vec3(0.5f),
+            .ground = Vec3(0.5f)});
+        const Water water = {.absorption = Vec3(1000), .scattering = Vec3(0)};
+        const WaterWaves waves = {
+            .waves = {{.amplitude = kSteepness / number, .length = kLength, .sharpness = 1}}};
+        WaveTable table;
+        fill_wave_table(water, waves, 0, table);
+        frequency = table.lines[0].frequency;
+        sea = world.create(water, waves, table, WorldTransform{at({0, 0, 0})});
+    }
+    /// Mean of each column of pixels, from -x to +x.
+    std::vector<float> columns(const WaterLook& look) {
+        world.add(sea, WaterLook{look});
+        const float half = std::sqrt(0.5f);
+        const Affine pose = affine_from({0, kHeight, 0}, {half, -half, 0, 0}, Vec3(1));
+        const gpu::FloatImage image = radiance(make_render_view(
+            {.fov_y = radians(90.0f), .near = 0.05f}, pose, pose,
+            {.width = kSize, .height = kSize}));
+        std::vector<float> means(kSize, 0.0f);
+        for (int y = 0; y < kSize; ++y) {
+            for (int x = 0; x < kSize; ++x) {
+                means[static_cast<std::size_t>(x)] += image.at(x, y, 0) / kSize;
+            }
+        }
+        return means;
+    }
+    /// The column that shows the water at rest `phase` [rad] behind a crest, as the wave moves it.
+    [[nodiscard]] std::size_t column_behind(float phase) const {
+        const float rest = (kPi / 2 - phase) / number;  // sin(k x) = 1 at the crest
+        const float x = rest + kSteepness / number * std::cos(number * rest);
+        const float y = kSteepness / number * std::sin(number * rest);
+        return static_cast<std::size_t>((0.5f * x / (kHeight - y) + 0.5f) * kSize);
+    }
+
+    static constexpr float number = 2 * kPi / kLength;
+    float frequency = 0;
+    Entity sea;
+};
+
+float whitened(float dark, float cover) {
+    const float white = (0.4f + 0.6f * cover) * cover;
+    return dark + (kFoam - dark) * white;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    Sea, "whitecaps: foam of crests that have passed is left to its decay"
+             * technique("water.whitecaps")) {
+    const std::vector<float> dark = columns({});
+    constexpr float kTurn = 1.8f;  // of the wave's phase between two moments that count
+    const WaterLook look = {.foam_below = 0.8f, .foam_decay = kTurn / frequency / 0.3f};
+    const std::vector<float> white = columns(look);
+    const std::size_t crest = column_behind(0);
+    CHECK(dark[crest] < 0.03f);
+    CHECK(white[crest] == test::near(kFoam).epsilon(0.01));
+    for (const int moments : {1, 2}) {
+        CAPTURE(moments);
+        const auto i = column_behind(kTurn * static_cast<float>(moments));
+        const float cover = std::exp(-0.3f * static_cast<float>(moments));
+        float seen = 0;
+        for (std::size_t k = i - 3; k <= i + 3; ++k) {
+            seen += white[k] / 7;
+        }
+        CHECK(seen == test::near(whitened(dark[i], cover)).epsilon(0.08));
+    }
+}
+
+TEST_CASE_FIXTURE(Sea, "whitecaps: they trail behind their crests" * technique("water.whitecaps")) {
+    const std::vector<float> white = columns({.foam_below = 0.5f, .foam_decay = 1});
+    CHECK(white[column_behind(1.6f)] > 1.5f * white[column_behind(-1.6f)]);
+}
+
+TEST_CASE_FIXTURE(Sea, "whitecaps: none where waves are not steep enough, or by default") {
+    const std::vector<float> dark = columns({});
+    CHECK(columns({.foam_below = -0.2f}) == dark);
+    CHECK(columns({.foam_below = 0.8f}) != dark);
+}
+
+}  // namespace limn::test::whitecaps_test
