@@ -2,6 +2,7 @@
 
 #include "ecs/base/jobs.h"
 #include "systems/water/floating_body.h"
+#include "systems/water/floating_contact.h"
 
 #include <optional>
 #include <vector>
@@ -50,6 +51,12 @@ void update_floating_bodies(
                 surfaces, *body.touch, *body.floating, time->step, *body.state, *body.transform);
         }
     });
+    thread_local std::vector<ContactBody> contact_memory;  // reused between steps
+    contact_memory.clear();
+    for (const Body& body : afloat) {
+        contact_memory.push_back({body.touch, body.floating, body.state, body.transform});
+    }
+    separate_floating_bodies(contact_memory);
     for (const Body& body : afloat) {  // in their order, for determinism
         if (!body.splash) {
             continue;

@@ -15,7 +15,8 @@ namespace limn {
 void add_floating_states(Query<const Floating, Without<FloatingState>> bodies, Commands commands);
 
 /// Advances all floating bodies by a step, with the water at the end of the step. Bodies that hit
-/// the water add impulses to its ripples. After everything that moves water, before
+/// the water add impulses to its ripples, and bodies that touch push
+/// one another. After everything that moves water, before
 /// update_transforms.
 void update_floating_bodies(
     WaterQuery waters, Query<RippleState> ripples,
