@@ -12,9 +12,10 @@ namespace limn {
 // Contacts of floating bodies, boxes and balls, with one another.
 //
 // Pairs are found by sweep and prune along x. Boxes are tested along the 15 axes of separation
-// (Gottschalk et al. 1996), a ball against the nearest point of a box. Each contact is one point, which
-// impulses keep from approaching: restitution, Coulomb friction, then positions are moved apart by
-// a part of the overlap. Pairs are solved in their order, so that results do not depend on threads.
+// (Gottschalk et al. 1996), a ball against the nearest point of a box. Each contact is one point,
+// which impulses keep from approaching: restitution, Coulomb friction, then positions are moved
+// apart by a part of the overlap. Pairs are solved in their order, so that results do not depend on
+// threads.
 
 /// Where two shapes overlap.
 struct BodyContact {
