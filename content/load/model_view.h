@@ -24,6 +24,7 @@ struct ModelViewOptions {
     std::string backdrop = "studio";  ///< studio, sky, gray, black, or an image: a panorama
     double turntable = 0;             ///< seconds per turn of the camera; 0: fixed
     std::string variant = {};         ///< of the materials of a glTF file; empty: its default
+    bool wrinkles = true;             ///< imported faces wrinkle (face_wrinkles.h)
     LoadOptions load = {};            ///< how bad parts of the file are handled
 };
 

@@ -1,5 +1,6 @@
 #include "content/load/scene_load.h"
 
+#include "content/load/faces/face_wrinkles.h"
 #include "content/load/gltf/gltf_load.h"
 #include "content/load/gltf/gltf_spawn.h"
 #include "content/load/level/level_list.h"
@@ -191,6 +192,9 @@ load_model_scene(World& world, const std::string& path, const SceneOptions& opti
         log_warn("{}: found no mesh to draw, expected one", path);
     }
     move_to_origin(world, roots);
+    if (options.model.wrinkles) {
+        add_face_wrinkles(world);
+    }
     add_sound(world, path);
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);

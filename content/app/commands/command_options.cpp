@@ -77,6 +77,9 @@ void add_model_view(CLI::App& app, ModelViewOptions& options) {
            "of a glTF model: a variant of its materials, which `limn info` lists")
         ->type_name("NAME");
     app.add_flag(
+        "--wrinkles,!--no-wrinkles", options.wrinkles,
+        "of a face from limn import: folds where its shapes compress the skin (default)");
+    app.add_flag(
         "--strict", options.load.strict,
         "of a model: fail on a bad part, which otherwise is skipped with a warning");
 }
