@@ -1,6 +1,7 @@
 #include "bench/fakephong/phong_models.h"
 
 #include "content/make/models/shapes.h"
+#include "content/make/models/simplify_mesh.h"
 #include "content/make/models/teapot.h"
 
 #include <algorithm>
@@ -52,46 +53,6 @@ PhongMesh make_coarse_sphere(int slices, int stacks) {
     return mesh;
 }
 
-PhongMesh make_dodecahedron() {
-    // Vertices: a cube and three rectangles; faces: the five vertices nearest to each axis of the
-    // icosahedron, sorted around it.
-    const double golden = (1 + std::sqrt(5.0)) / 2;
-    PhongMesh mesh;
-    std::vector<dvec3> axes;
-    for (const double a : {-1.0, 1.0}) {
-        for (const double b : {-1.0, 1.0}) {
-            for (const double c : {-1.0, 1.0}) {
-                mesh.positions.push_back(dvec3(a, b, c));
-            }
-            const double x = a / golden;
-            const double y = b * golden;
-            mesh.positions.insert(mesh.positions.end(), {{0, x, y}, {x, y, 0}, {y, 0, x}});
-            axes.insert(axes.end(), {{0, a * golden, b}, {a * golden, b, 0}, {b, 0, a * golden}});
-        }
-    }
-    for (dvec3& p : mesh.positions) {
-        p = glm::normalize(p);
-    }
-    mesh.normals = mesh.positions;
-    for (const dvec3& axis : axes) {
-        const dvec3 n = glm::normalize(axis);
-        std::vector<std::pair<double, std::uint32_t>> around;
-        dvec3 u(0);
-        for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
-            if (glm::dot(n, mesh.positions[i]) > 0.7) {
-                const dvec3 p = mesh.positions[i] - glm::dot(n, mesh.positions[i]) * n;
-                u = around.empty() ? p : u;
-                around.emplace_back(std::atan2(glm::dot(glm::cross(n, u), p), glm::dot(u, p)), i);
-            }
-        }
-        std::sort(around.begin(), around.end());
-        for (std::size_t k = 2; k < around.size(); ++k) {
-            mesh.triangles.push_back({around[0].second, around[k - 1].second, around[k].second});
-        }
-    }
-    return mesh;
-}
-
 PhongScene triangle_scene() {
     PhongScene scene = {.name = "triangle"};
     scene.mesh = phong_mesh(make_triangle({.radius = 1}));
@@ -128,7 +89,9 @@ PhongScene printed_teapot_scene() {
 
 PhongScene teapot_scene() {
     PhongScene scene = {.name = "teapot"};
-    scene.mesh = phong_mesh(make_teapot({.divisions = 8, .height = 1.5f, .bottom = false}));
+    MeshData pot = make_teapot({.divisions = 8, .height = 1.5f});
+    simplify_mesh(pot, 3750);  // its flat bottom, first of all
+    scene.mesh = phong_mesh(pot);
     for (dvec3& p : scene.mesh.positions) {
         p.y -= 0.75;
     }
@@ -140,7 +103,8 @@ PhongScene teapot_scene() {
 }
 
 PhongScene dodecahedron_scene() {
-    return ball_scene("dodecahedron", make_coarse_sphere(5, 4), kBallLight);
+    return ball_scene(
+        "dodecahedron", phong_mesh(make_dodecahedron({.radius = 1, .faces = 10})), kBallLight);
 }
 
 PhongScene sphere_scene() {

@@ -20,8 +20,6 @@ namespace limn::fakephong {
 /// A latitude and longitude sphere of 2 slices (stacks - 1) triangles, with radial normals: the
 /// mesh "sphere" of levels, rotated so that a column of vertices faces the eye.
 [[nodiscard]] PhongMesh make_coarse_sphere(int slices, int stacks);
-/// The regular dodecahedron as 12 fans of three triangles, with radial normals.
-[[nodiscard]] PhongMesh make_dodecahedron();
 
 /// One triangle, point light near it: the canonical scene of the spec entry.
 [[nodiscard]] PhongScene triangle_scene();
@@ -31,10 +29,11 @@ namespace limn::fakephong {
 /// The teapot with lookup textures of 11 x 11: the printed row has both Blinn maps below even
 /// subdivided Gouraud and 0.0002 apart, which only coarse textures of 11 to 16 texels give here.
 [[nodiscard]] PhongScene printed_teapot_scene();
-[[nodiscard]] PhongScene teapot_scene();        ///< about 3,750 facets, directional light
-[[nodiscard]] PhongScene dodecahedron_scene();  ///< 30 triangles, point light
-[[nodiscard]] PhongScene sphere_scene();        ///< 40 triangles, point light
-[[nodiscard]] PhongScene fine_sphere_scene();   ///< 3,750 triangles, directional light
+[[nodiscard]] PhongScene teapot_scene();  ///< 3,750 facets, directional light
+/// 30 triangles, point light: without the two faces that the eye sees least.
+[[nodiscard]] PhongScene dodecahedron_scene();
+[[nodiscard]] PhongScene sphere_scene();       ///< 40 triangles, point light
+[[nodiscard]] PhongScene fine_sphere_scene();  ///< 3,750 triangles, directional light
 
 /// Table 6.1 of the thesis, in the order of shading_methods()[1 .. 6].
 struct PrintedRow {

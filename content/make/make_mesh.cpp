@@ -104,6 +104,8 @@ std::span<const MeshKind> mesh_kinds() {
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
         mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
+        mesh_kind<DodecahedronShape, make_dodecahedron>(
+            "dodecahedron", "twelve pentagons, or some of them"),
         mesh_kind<TriangleShape, make_triangle>("triangle", "an equilateral triangle that faces z"),
         mesh_kind<VaultShape, make_vault>("vault", "a pointed cross vault over a rectangle"),
         mesh_kind<MasonryWall, make_wall>(

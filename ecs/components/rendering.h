@@ -46,7 +46,7 @@ enum class ShadingRate : std::uint8_t {
     QuadraticBlinn,  ///< highlights, by quadratic coordinates of each light
     HwBlinn,         ///< as BlinnMap, with the HardwareDefects of appendix B
     PhongMap,        ///< diffuse light, by linear coordinates of each light; no highlights
-    Environment,     ///< highlights of all lights in one sphere map, as if infinitely far away
+    Environment,     ///< highlights of all lights in one map, as if infinitely far away
 
     // Vectors to lights at vertices, in tangent space, and normal maps per pixel. Of Blinn and
     // Phong surfaces only:
@@ -61,6 +61,14 @@ enum class BlinnAxis : std::uint8_t {
     WorldUp,    ///< +y, as in appendix B
     WorstCase,  ///< along the projected normal of each vertex: v = 0, no better than Gouraud
     Custom,     ///< Rendering::blinn_vector
+};
+
+/// How a map of highlights is laid out for the rate Environment (fakephong.envmap).
+enum class HighlightLayout : std::uint8_t {
+    Sphere,      ///< coordinates at vertices, as in the thesis: bent near silhouettes
+    Longitude,   ///< latitude and longitude; here and below coordinates at pixels
+    Cube,        ///< six faces
+    Paraboloid,  ///< two discs, toward the camera and away from it
 };
 
 /// What the thesis's programs for the hardware of 2002 get wrong. Without all of them HwQuadratic
@@ -144,6 +152,7 @@ struct Rendering {
     BlinnAxis blinn_axis = BlinnAxis::CameraUp;
     Vec3 blinn_vector = {0, 1, 0};
     bool blinn_diffuse = false;
+    HighlightLayout highlight_layout = HighlightLayout::Sphere;
     bool screen_interpolation = false;
     HardwareDefects hardware = {};
     DetailLimit surface_detail = DetailLimit::Full;
@@ -179,6 +188,11 @@ LIMN_FIELDS(Rendering) {
         blinn_diffuse,
         "blinn_map, quadratic_blinn: diffuse light is read in a texture, too; of four lights at "
         "most, by further ones vertices are lit");
+    LIMN_FIELD(
+        highlight_layout,
+        .doc = "environment: the map of highlights; sphere: coordinates from vertices, which bend "
+               "near silhouettes; otherwise directions from vertices and coordinates at pixels",
+        .values = "sphere longitude cube paraboloid");
     LIMN_FIELD(
         screen_interpolation,
         "forward shading interpolates on the screen, without the perspective divide, as hardware "

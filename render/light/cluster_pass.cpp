@@ -160,6 +160,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     if (comparison != nullptr && view.is(kMainViews)) {
         method.compared = comparison->right;
     }
+    method.highlights = rendering.highlight_layout;
     method.worst_blinn_axis = rendering.blinn_axis == BlinnAxis::WorstCase;
     method.blinn_diffuse = rendering.blinn_diffuse;
     method.screen_interpolation = rendering.screen_interpolation;

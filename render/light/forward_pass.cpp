@@ -55,6 +55,9 @@ void add_definitions(
             std::clamp(lights, 1, diffuse ? kMaxDiffuseLights : row.single_lights));
         variant.add("SINGLE_LIGHTS", static_cast<int>(std::bit_ceil(kept)));
     }
+    if (row.map == HighlightMap::Environment) {
+        variant.add("ENVIRONMENT_LAYOUT", static_cast<int>(method.highlights));
+    }
     variant.add_if(method.worst_blinn_axis && row.map == HighlightMap::Blinn, "WORST_AXIS");
     variant.add_if(method.screen_interpolation, "SCREEN_LINEAR");
     const HardwareDefects& defects = method.hardware;

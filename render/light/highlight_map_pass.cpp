@@ -70,7 +70,7 @@ bool is_same(const HighlightMapEffect::Source& a, const HighlightMapEffect::Sour
                       a.lights.data(), b.lights.data(),
                       a.lights.size() * sizeof(layout::LightRecord))
                       == 0)
-           && a.directional == b.directional
+           && a.directional == b.directional && a.layout == b.layout
            && std::equal(
                std::begin(a.camera.row), std::end(a.camera.row), std::begin(b.camera.row));
 }
@@ -98,8 +98,7 @@ Vec3 blinn_axis(const Rendering& rendering, const RenderView& camera) {
 Result<HighlightMapEffect> HighlightMapEffect::create(gpu::Device& device, const RenderSettings&) {
     return HighlightMapEffect{
         .bake_blinn = LIMN_TRY(device.shaders().load({.compute = "highlight_maps.comp"})),
-        .bake_environment =
-            LIMN_TRY(device.shaders().load({.compute = "highlight_environment.comp"}))};
+        .bake_environment = ProgramVariants(device, {.compute = "highlight_environment.comp"})};
 }
 
 bool HighlightMapEffect::is_used(const FrameData& frame) {
@@ -152,6 +151,7 @@ HighlightMaps::Map HighlightMapEffect::draw_map(
         const auto& list = view.data.get<LightList>();
         wanted.lights = list.records;
         wanted.directional = list.directional;
+        wanted.layout = view.data.get<LightingMethod>().highlights;
         wanted.camera = view.camera.world_from_camera;
     }
 
@@ -179,14 +179,19 @@ HighlightMaps::Map HighlightMapEffect::draw_map(
     graph.add_pass(
         "highlight maps", {}, {image(published.layers)},
         [this, &maps, texture = published.layers, count, by_view, &view](PassContext& context) {
-            const gpu::Program& program = by_view ? *bake_environment : *bake_blinn;
-            context.device().use(program);
+            Variant variant;
+            variant.add("ENVIRONMENT_LAYOUT", static_cast<int>(maps.source.layout));
+            const gpu::Program* program = by_view ? bake_environment.get(variant) : bake_blinn;
+            if (program == nullptr) {
+                return;
+            }
+            context.device().use(*program);
             maps.layer_records.bind(context.device(), layout::kHighlightRecordsUnit);
             context.bind_image(layout::kHighlightMapsImage, texture, GL_WRITE_ONLY);
             if (by_view) {
                 bind_view(context, view);
                 lights.bind(context.device(), layout::kLightsUnit);
-                program.set("light_count", static_cast<int>(environment.source.lights.size()));
+                program->set("light_count", static_cast<int>(environment.source.lights.size()));
             }
             context.device().dispatch(
                 kHighlightMapSize / kHighlightGroup, kHighlightMapSize / kHighlightGroup,

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "ecs/components/rendering.h"
 #include "render/effect.h"
 #include "render/gpu/buffer_texture.h"
 #include "render/gpu/texture.h"
 #include "render/light/highlight_layers.h"
 #include "render/shaders/light_gpu.h"
+#include "render/variant.h"
 
 #include <vector>
 
@@ -19,9 +21,9 @@ namespace limn {
 // Order    after LightList, before surfaces are lit
 // Shaders  highlight_maps.comp, highlight_environment.comp
 //
-// Baked again only when something has changed. In a sphere map each light has one direction, as
-// seen from the center of all objects of the material: a lamp among them lights them from the wrong
-// side. Sphere maps have no shadows.
+// Baked again only when something has changed. In an environment map (HighlightLayout) each light
+// has one direction, as seen from the center of all objects of the material: a lamp among them
+// lights them from the wrong side. Environment maps have no shadows.
 
 inline constexpr int kHighlightMapSize = 256;  ///< [px]
 
@@ -31,6 +33,7 @@ struct HighlightMapEffect {
         std::vector<Vec4> layers = {};  ///< center of the objects [m]; w: exponent of Blinn's lobe
         std::vector<layout::LightRecord> lights = {};
         int directional = 0;
+        HighlightLayout layout = HighlightLayout::Sphere;
         Affine camera = {};
     };
     struct Maps {
@@ -42,7 +45,7 @@ struct HighlightMapEffect {
     };
 
     const gpu::Program* bake_blinn = nullptr;
-    const gpu::Program* bake_environment = nullptr;
+    ProgramVariants bake_environment;
     Maps blinn = {};
     Maps environment = {};
     BufferTexture lights = BufferTexture("highlight lights", GL_RGBA32F);

@@ -1,12 +1,13 @@
-// Highlights of all lights in sphere maps of the camera's axes (fakephong.envmap-bake): the sum of E (W.L)^(n / 4), W
+// Highlights of all lights in maps of the camera's axes (fakephong.envmap-bake; ENVIRONMENT_LAYOUT): the sum of E (W.L)^(n / 4), W
 // the direction of a texel and n the exponent of Blinn's highlight. All lights count as directional, with the direction
-// from the center of a layer's objects. Texels at the edge are 0, like those beyond the disc.
+// from the center of a layer's objects. Texels at the edge of a sphere map are 0, like those beyond its disc.
 // Techniques: fakephong.envmap-bake
 #version 450
 #define LINEAR_FADE
 #define SPOT_ANGLES
 #include "lib/light.glsl"
 #include "lib/view.glsl"
+#include "lib/highlight_layout.glsl"
 #include "light_gpu.h"
 #include "highlight_gpu.h"
 
@@ -45,10 +46,9 @@ void main() {
     ivec2 size = imageSize(maps).xy;
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     vec2 at = 2.0 * (vec2(texel) + 0.5) / vec2(size) - 1.0;
-    float squared = 1.0 - dot(at, at);
+    vec3 w = map_direction(at);
     vec3 sum = vec3(0.0);
-    if (squared >= 0.0 && all(greaterThan(texel, ivec2(0))) && all(lessThan(texel, size - 1))) {
-        vec3 w = vec3(2.0 * sqrt(squared) * at, 2.0 * squared - 1.0);
+    if (w != vec3(0.0)) {
         vec3 w_ws = w.x * normalize(view.ray_right.xyz) + w.y * normalize(view.ray_up.xyz) - w.z * view.ray_forward.xyz;
         vec4 layer = texelFetch(layers, int(gl_WorkGroupID.z));
         for (int i = 0; i < light_count; ++i) {

@@ -94,6 +94,27 @@ TEST_CASE(
     CHECK(weighted_operations({.additions = 1, .multiplications = 2, .fetches = 1}) == 7);
 }
 
+// "About twice as slow as Gouraud" in the thesis (section 6.2), by its Java program.
+TEST_CASE(
+    "fakephong: quadratic shading takes about twice the work of Gouraud shading"
+    * technique("fakephong.metric-efficiency, fakephong.quadratic")) {
+    for (const PhongScene& scene : {teapot_scene(), sphere_scene(), triangle_scene()}) {
+        CAPTURE(scene.name);
+        const SceneResult result = evaluate_scene(scene);
+        const auto work_of = [&](const char* id) {
+            for (const MethodResult& one : result.methods) {
+                if (one.method->id == std::string_view(id)) {
+                    return weighted_operations(one.image);
+                }
+            }
+            return 0.0;
+        };
+        const double ratio = work_of("quadratic") / work_of("gouraud");
+        CHECK(ratio > 1.5);
+        CHECK(ratio < 3);
+    }
+}
+
 TEST_CASE(
     "fakephong: chords and quadratics miss an arc by the derived distances"
     * technique("fakephong.blinn-path")) {

@@ -275,6 +275,50 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: cube, longitude and paraboloid maps hold every direction"
+                    * technique("fakephong.envmap, fakephong.envmap-bake")) {
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.shading = ShadingModel::Phong;
+    material.shininess = 8;
+    show(make_ball(48));
+    const auto distance_with = [&](HighlightLayout layout) {
+        rendering.highlight_layout = layout;
+        return largest_difference(drawn(ShadingRate::Environment), drawn(ShadingRate::Pixel));
+    };
+    SUBCASE("from the front") {
+        directional_light({0.2f, 0.4f, 1});
+    }
+    SUBCASE("from the side") {
+        directional_light({-1, 0.1f, 0.2f});
+    }
+    SUBCASE("from below") {
+        directional_light({0.3f, -0.6f, 1});
+    }
+    for (const HighlightLayout layout :
+         {HighlightLayout::Longitude, HighlightLayout::Cube, HighlightLayout::Paraboloid}) {
+        CAPTURE(static_cast<int>(layout));
+        CHECK(distance_with(layout) < 2 * kStep);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Laboratory, "fake phong: near silhouettes a cube map has not the faults of a sphere map"
+                    * technique("fakephong.envmap")) {
+    auto& material = world.resource<Assets>().materials[shiny.index];
+    material.shading = ShadingModel::Phong;
+    material.shininess = 16;
+    show(make_ball(10));
+    directional_light({-1, 0.5f, -0.5f});
+    const auto distance_with = [&](HighlightLayout layout) {
+        rendering.highlight_layout = layout;
+        return largest_difference(drawn(ShadingRate::Environment), drawn(ShadingRate::Pixel));
+    };
+    const float sphere = distance_with(HighlightLayout::Sphere);
+    CHECK(sphere > 10 * kStep);
+    CHECK(sphere > 1.5f * distance_with(HighlightLayout::Cube));
+}
+
+TEST_CASE_FIXTURE(
     Laboratory, "fake phong: at the centroid a Taylor series is exact for lights and eye far away"
                     * technique("fakephong.taylor")) {
     show(make_spread_triangle());

@@ -3,8 +3,12 @@
 #include "content/make/models/surface_grid.h"
 #include "ecs/base/check.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 // Techniques: fakephong.scenes
@@ -230,6 +234,59 @@ MeshData make_plane(const PlaneShape& shape) {
         return GridVertex{
             {position.x, 0, position.y}, {0, 1, 0}, {1, 0, 0}, shape.metric ? position : uv};
     });
+    return mesh;
+}
+
+MeshData make_dodecahedron(const DodecahedronShape& shape) {
+    LIMN_CHECK(shape.radius > 0 && shape.faces >= 1 && shape.faces <= 12);
+    // Corners: a cube and three rectangles; faces: the five corners nearest to each axis of the
+    // icosahedron, sorted around it.
+    const float golden = 0.5f * (1 + std::sqrt(5.0f));
+    std::vector<Vec3> corners;
+    std::vector<Vec3> axes;
+    for (const float a : {-1.0f, 1.0f}) {
+        for (const float b : {-1.0f, 1.0f}) {
+            for (const float c : {-1.0f, 1.0f}) {
+                corners.emplace_back(a, b, c);
+            }
+            const float x = a / golden;
+            const float y = b * golden;
+            corners.insert(corners.end(), {{0, x, y}, {x, y, 0}, {y, 0, x}});
+            axes.insert(axes.end(), {{0, a * golden, b}, {a * golden, b, 0}, {b, 0, a * golden}});
+        }
+    }
+    std::stable_sort(
+        axes.begin(), axes.end(), [](const Vec3& a, const Vec3& b) { return a.z > b.z; });
+    axes.resize(static_cast<std::size_t>(shape.faces));
+    MeshData mesh;
+    for (const Vec3& corner : corners) {
+        const Vec3 n = glm::normalize(corner);
+        mesh.positions.push_back(shape.radius * n);
+        mesh.normals.push_back(n);
+        const Vec3 along = glm::cross(std::abs(n.y) < 0.99f ? Vec3(0, 1, 0) : Vec3(0, 0, 1), n);
+        mesh.tangents.emplace_back(glm::normalize(along), 1);
+        mesh.uvs.emplace_back(0.5f + std::atan2(n.x, n.z) / (2 * kPi), 0.5f - std::asin(n.y) / kPi);
+        grow(mesh.bounds, mesh.positions.back());
+    }
+    for (const Vec3& axis : axes) {
+        const Vec3 n = glm::normalize(axis);
+        std::vector<std::pair<float, std::uint32_t>> around;
+        Vec3 first(0);
+        for (std::uint32_t i = 0; i < mesh.normals.size(); ++i) {
+            const float along = glm::dot(n, mesh.normals[i]);
+            if (along > 0.7f) {
+                const Vec3 p = mesh.normals[i] - along * n;
+                first = around.empty() ? p : first;
+                around.emplace_back(
+                    std::atan2(glm::dot(glm::cross(n, first), p), glm::dot(first, p)), i);
+            }
+        }
+        std::sort(around.begin(), around.end());
+        for (std::size_t k = 2; k < around.size(); ++k) {
+            mesh.indices.insert(
+                mesh.indices.end(), {around[0].second, around[k - 1].second, around[k].second});
+        }
+    }
     return mesh;
 }
 

@@ -81,6 +81,19 @@ LIMN_FIELDS(TriangleShape) {
     LIMN_FIELD(divisions, "of each side; their square is the number of facets", "", 1, 1024);
 }
 
+/// A regular dodecahedron: twelve pentagons of three triangles, or the first of them, from +z on,
+/// without those at the back. Its normals are radial.
+struct DodecahedronShape {
+    float radius = 0.5f;
+    int faces = 12;
+};
+
+LIMN_FIELDS(DodecahedronShape) {
+    LIMN_FIELD(radius, "from the center to the corners", "m", 1e-4, 1e5);
+    LIMN_FIELD(
+        faces, "number of pentagons; fewer: those at the back, at -z, are left out", "", 1, 12);
+}
+
 /// A tube around +y, closed by two discs.
 struct CylinderShape {
     float radius = 0.5f;
@@ -157,6 +170,7 @@ LIMN_FIELDS(LatheShape) {
 [[nodiscard]] MeshData make_torus(const TorusShape& shape);
 [[nodiscard]] MeshData make_plane(const PlaneShape& shape);
 [[nodiscard]] MeshData make_triangle(const TriangleShape& shape);
+[[nodiscard]] MeshData make_dodecahedron(const DodecahedronShape& shape);
 [[nodiscard]] MeshData make_cylinder(const CylinderShape& shape);
 [[nodiscard]] MeshData make_cone(const ConeShape& shape);
 [[nodiscard]] MeshData make_disc(const DiscShape& shape);

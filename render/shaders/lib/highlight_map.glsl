@@ -66,12 +66,8 @@ vec2 hardware_blinn_coordinates(vec3 normal, vec3 to_light, vec3 to_camera) {
     return vec2(dot(axis, projected), dot(cross(h, axis), projected));
 }
 
-// Sphere map: the reflected view direction in the camera's axes (fakephong.envmap), independent of lights. At the
-// center if that direction points straight away from the camera.
-vec2 sphere_map_coordinates(vec3 normal, vec3 to_camera) {
+// The view direction mirrored at the surface, in the camera's axes (fakephong.envmap): independent of lights.
+vec3 mirrored_view(vec3 normal, vec3 to_camera) {
     vec3 w = 2.0 * dot(normal, to_camera) * normal - to_camera;
-    vec3 reflected = vec3(
-        dot(w, normalize(view.ray_right.xyz)), dot(w, normalize(view.ray_up.xyz)), -dot(w, view.ray_forward.xyz));
-    float m2 = reflected.x * reflected.x + reflected.y * reflected.y + (reflected.z + 1.0) * (reflected.z + 1.0);
-    return m2 > 1e-10 ? reflected.xy * inversesqrt(m2) : vec2(0.0);
+    return vec3(dot(w, normalize(view.ray_right.xyz)), dot(w, normalize(view.ray_up.xyz)), -dot(w, view.ray_forward.xyz));
 }
