@@ -92,10 +92,11 @@ LIMN_FIELDS(IkRig) {
 
 /// What the solver needs to know of an IkRig, found before each step.
 struct IkGoals {
-    std::vector<Vec3> positions;       ///< of each chain's goal in the character's space [m]
-    std::vector<Quat> rotations;       ///< likewise
-    std::vector<std::uint16_t> tips;   ///< joints; 0xffff: there is none of that name
-    std::vector<std::uint16_t> roots;  ///< likewise
+    std::vector<Vec3> positions;              ///< of each chain's goal in the character's space [m]
+    std::vector<Quat> rotations;              ///< likewise
+    std::vector<std::uint16_t> tips;          ///< joints; 0xffff: there is none of that name
+    std::vector<std::uint16_t> roots;         ///< likewise
+    std::vector<std::uint16_t> collars = {};  ///< that carry the chains' limbs; 0xffff: none
 };
 template <>
 struct ComponentTraits<IkGoals> : DefaultTraits {
@@ -195,12 +196,14 @@ struct ReachState {
     Vec3 target = {0, 0, 0};
     float weight = 0.0f;
     std::vector<std::uint16_t> tips{};
+    std::vector<std::uint16_t> collars{};
 };
 
 LIMN_FIELDS(ReachState) {
     LIMN_FIELD(target, "where the target seems to be, in the character's space", "m");
     LIMN_FIELD(weight, "of the reach, 0: the animation", "", 0, 1);
     LIMN_FIELD(tips, "indices of the joints");
+    LIMN_FIELD(collars, "of the collar bones of those that are hands; 65535: none");
 }
 
 }  // namespace limn

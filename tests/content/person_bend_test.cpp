@@ -124,17 +124,17 @@ LocalPose bent(const SkeletonData& skeleton, const char* joint, float angle) {
     return pose;
 }
 
-/// Arms raised from where they hang by `angle` [rad], a fifth of it by the shoulder blade; the axis
-/// is forward, that of the second freedom of the joints.
+/// Arms raised from where they hang by `angle` [rad], by a shoulder girdle that takes a third; the
+/// axis is forward, that of the second freedom of the joints.
 LocalPose raised(const SkeletonData& skeleton, float angle) {
     LocalPose pose = skeleton.rest;
     const float beyond = angle - kPi / 4;  // at rest, arms are 45 degrees below the horizontal
     for (const auto& [side, name] : {std::pair(1.0f, "Left"), std::pair(-1.0f, "Right")}) {
         const std::string s = name;
         pose.rotations[joint_called(skeleton, s + "Shoulder")] =
-            rotation_about({0, 0, side}, 0.2f * beyond);
+            rotation_about({0, 0, side}, beyond / 3);
         pose.rotations[joint_called(skeleton, s + "UpperArm")] =
-            rotation_about({0, 0, side}, 0.8f * beyond);
+            rotation_about({0, 0, side}, 2 * beyond / 3);
     }
     return pose;
 }
@@ -315,7 +315,7 @@ TEST_CASE(
             const SkeletonData skeleton = make_person_rig(shape).skeleton;
             const float angle = radians(degrees);
             const LocalPose pose = raised(skeleton, angle);
-            const float weight = bend_shape_weight(0.8f * (angle - kPi / 4));
+            const float weight = bend_shape_weight(2 * (angle - kPi / 4) / 3);
             MeshData corrected = shirt;
             for (const char* joint : {"LeftUpperArm axis 2", "RightUpperArm axis 2"}) {
                 corrected = with_bend(corrected, joint, weight);
@@ -327,9 +327,8 @@ TEST_CASE(
             const float kept = nearest_armpit(shirt, corrected, skeleton, pose);
             CAPTURE(bare);
             CAPTURE(kept);
-            REQUIRE(bare < (degrees > 100 ? 0.72f : 0.99f));
-            CHECK(kept > (degrees > 100 ? 0.8f : 0.96f));
-            CHECK(1 - kept < 0.6f * (1 - bare));
+            CHECK(kept > (degrees > 100 ? 0.9f : 0.98f));
+            CHECK((degrees < 100 || bare < 0.85f));
         }
     }
 }
@@ -348,7 +347,7 @@ TEST_CASE("person: bend shapes of all parts are the same list, and levels of det
             CHECK(shape.name == names[t]);
             CHECK(shape.positions.size() == shape.vertices.size());
             for (const Vec3& shift : shape.positions) {
-                CHECK(glm::length(shift) < 0.12f);
+                CHECK(glm::length(shift) < (shape.name.ends_with("axis 2") ? 0.27f : 0.12f));
             }
         }
     }

@@ -24,6 +24,10 @@ namespace {
 
 constexpr float kMinShift = 1e-4f;  ///< of a vertex that a shape moves [m]
 constexpr float kMaxShift = 0.12f;  ///< far from a hip, skin is held by what is around it [m]
+constexpr float kMaxArmpitShift = 0.27f;
+/// Armpits are between arm and chest, and a raised arm turns by half as much again against the
+/// chest as against its collar bone, which rises with it. So much more is lacking, by measurement.
+constexpr float kArmpitGain = 1.95f;
 
 struct BendHinge {
     std::uint16_t joint = 0;
@@ -81,9 +85,11 @@ Vec3 bend_shift(const BendHinge& hinge, const Vec3& p, float share) {
     const float across = glm::length(from - glm::dot(from, hinge.axis) * hinge.axis);
     const float inside = glm::dot(from, hinge.inward) / std::max(across, 1e-4f);
     const float outside = 1 - glm::smoothstep(-0.2f, 0.7f, inside);
-    const Vec3 shift = outside * (glm::inverse(blend) * (wanted - blend * from));
+    const float more = hinge.creased ? kArmpitGain : 1.0f;
+    const Vec3 shift = more * outside * (glm::inverse(blend) * (wanted - blend * from));
     const float length = glm::length(shift);
-    return length > 0 ? kMaxShift * std::tanh(length / kMaxShift) / length * shift : shift;
+    const float most = hinge.creased ? kMaxArmpitShift : kMaxShift;
+    return length > 0 ? most * std::tanh(length / most) / length * shift : shift;
 }
 
 /// Vertices at one place, each with all that share an edge with any of them.

@@ -85,8 +85,9 @@ KeyPose standing(const PersonFrame& frame, float phase) {
 
 KeyPose arms_up(const PersonFrame&) {
     KeyPose pose;
-    pose.turn(SideJoint::Shoulder, {0, 0, 1}, 22);
-    pose.turn(SideJoint::UpperArm, {0, 0, 1}, 88);
+    // Of what the arms are raised beyond 45 degrees, collar bones take a third.
+    pose.turn(SideJoint::Shoulder, {0, 0, 1}, 36);
+    pose.turn(SideJoint::UpperArm, {0, 0, 1}, 72);
     return pose;
 }
 

@@ -199,7 +199,7 @@ void add_limits_of_back(FreedomList& limits) {
 }
 
 void add_limits_of_arm(FreedomList& limits, const PersonFrame& frame) {
-    limits.add(SideJoint::Shoulder, {0, 0, 1}, -6, 26, 0.5f);
+    limits.add(SideJoint::Shoulder, {0, 0, 1}, -6, 40, 0.5f);
     limits.add(SideJoint::Shoulder, {0, 1, 0}, -16, 12, 0.5f);
     limits.add(SideJoint::UpperArm, {0, 1, 0}, -125, 45);
     limits.add(SideJoint::UpperArm, {0, 0, 1}, -50, 120);

@@ -6,6 +6,7 @@
 #include "systems/animation/ik/look_at.h"
 #include "systems/animation/ik/placements.h"
 #include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/ik/shoulder_girdle.h"
 
 #include <glm/geometric.hpp>
 
@@ -86,6 +87,15 @@ std::uint16_t find_root(
     return root;
 }
 
+/// Of the limb that ends at `tip`.
+std::uint16_t find_limb_collar(const SkeletonData& skeleton, std::uint16_t tip, int bones) {
+    return tip == kNoJoint
+               ? kNoJoint
+               : find_collar(
+                   skeleton,
+                   find_limb(skeleton, tip, static_cast<std::size_t>(std::max(bones, 2))).root);
+}
+
 void update_goals(
     const Placements& placements, Entity entity, const SkeletonData& skeleton, const IkRig& rig,
     IkGoals& goals) {
@@ -94,12 +104,17 @@ void update_goals(
     goals.rotations.resize(count);
     goals.tips.resize(count, kNoJoint);
     goals.roots.resize(count, kNoJoint);
+    goals.collars.resize(count, kNoJoint);
     for (std::size_t i = 0; i < count; ++i) {
         const IkChain& chain = rig.chains[i];
         const GoalPoint point = find_point(placements, entity, chain.goal, chain.position);
         goals.positions[i] = point.position;
         goals.rotations[i] = point.rotation;
-        goals.tips[i] = find_joint(skeleton, chain.tip, goals.tips[i]);
+        const std::uint16_t tip = goals.tips[i];
+        goals.tips[i] = find_joint(skeleton, chain.tip, tip);
+        if (goals.tips[i] != tip) {
+            goals.collars[i] = find_limb_collar(skeleton, goals.tips[i], chain.bones);
+        }
         goals.roots[i] = find_root(skeleton, chain, goals.tips[i], goals.roots[i]);
     }
 }
@@ -150,8 +165,13 @@ void update_reach(
     const SkeletonData& skeleton, const ReachGoal& goal, const Vec3& target, double time,
     float step, ReachState& state) {
     state.tips.resize(goal.tips.size(), kNoJoint);
+    state.collars.resize(goal.tips.size(), kNoJoint);
     for (std::size_t i = 0; i < goal.tips.size(); ++i) {
-        state.tips[i] = find_joint(skeleton, goal.tips[i], state.tips[i]);
+        const std::uint16_t tip = state.tips[i];
+        state.tips[i] = find_joint(skeleton, goal.tips[i], tip);
+        if (state.tips[i] != tip) {
+            state.collars[i] = find_limb_collar(skeleton, state.tips[i], goal.bones);
+        }
     }
     const bool was_reaching = state.weight > 0;
     state.weight = reach_weight(goal, time);

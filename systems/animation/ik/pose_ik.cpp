@@ -6,6 +6,7 @@
 #include "systems/animation/ik/hybrid_ik.h"
 #include "systems/animation/ik/look_at.h"
 #include "systems/animation/ik/penalty_ik.h"
+#include "systems/animation/ik/shoulder_girdle.h"
 
 #include <glm/geometric.hpp>
 
@@ -50,6 +51,10 @@ struct BodyTree {
         }
     }
 };
+
+std::uint16_t collar_of(std::span<const std::uint16_t> collars, std::size_t limb) {
+    return limb < collars.size() ? collars[limb] : kMissingJoint;
+}
 
 bool is_solved_jointly(const IkChain& chain) {
     return chain.solver == IkSolver::Penalty || chain.solver == IkSolver::Hybrid;
@@ -308,7 +313,7 @@ void apply_ik_rig(
             reach.offset = Vec3(0);
         }
         const LimbJoints limb = find_limb(skeleton, goals.tips[i], bones);
-        reach_with_limb(skeleton, limb, reach, pose);
+        reach_with_arm(skeleton, collar_of(goals.collars, i), limb, reach, pose);
         if (chain.orient) {
             set_joint_rotation(skeleton, limb.tip, goals.rotations[i], chain.weight, pose);
         }
@@ -377,11 +382,15 @@ void apply_reach(
         // What the limb that gets nearest lacks, at full weight.
         thread_local LocalPose trial;
         Vec3 lacks(INFINITY);
-        for (const std::uint16_t tip : state.tips) {
+        for (std::size_t i = 0; i < state.tips.size(); ++i) {
+            const std::uint16_t tip = state.tips[i];
             if (tip < pose.size()) {
                 trial = pose;
+                const LimbJoints limb = find_limb(skeleton, tip, bones);
+                LimbReach whole = reach;
+                whole.weight = 1;
                 const Vec3 end =
-                    reach_with_limb(skeleton, find_limb(skeleton, tip, bones), reach, trial);
+                    reach_with_arm(skeleton, collar_of(state.collars, i), limb, whole, trial);
                 const Vec3 left = state.target - end;
                 lacks = glm::dot(left, left) < glm::dot(lacks, lacks) ? left : lacks;
             }
@@ -390,9 +399,11 @@ void apply_reach(
             pose.translations[0] += state.weight * lacks;
         }
     }
-    for (const std::uint16_t tip : state.tips) {
+    for (std::size_t i = 0; i < state.tips.size(); ++i) {
+        const std::uint16_t tip = state.tips[i];
         if (tip < pose.size()) {
-            reach_with_limb(skeleton, find_limb(skeleton, tip, bones), reach, pose);
+            const LimbJoints limb = find_limb(skeleton, tip, bones);
+            reach_with_arm(skeleton, collar_of(state.collars, i), limb, reach, pose);
         }
     }
 }

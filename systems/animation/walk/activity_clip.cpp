@@ -4,6 +4,7 @@
 #include "ecs/base/repeatable_math.h"
 #include "ecs/base/rotation.h"
 #include "systems/animation/ik/joint_tree.h"
+#include "systems/animation/ik/shoulder_girdle.h"
 #include "systems/animation/walk/walk_body.h"
 
 #include <glm/geometric.hpp>
@@ -90,6 +91,7 @@ void place_arm(Actor& actor, std::size_t i, const ArmPose& wanted) {
         * glm::conjugate(find_place(actor.skeleton, actor.skeleton.rest, arm.fore).rotation);
     const Vec3 from = turned * arm.fore_way;
     actor.turn(arm.fore, shortest_arc(from, normalize_or(direction(wanted.fore), from)));
+    raise_collar(actor.skeleton, {arm.collar, arm.upper, arm.fore}, 1, actor.pose);
 }
 
 constexpr ArmPose kHanging = {{0.16f, 0.04f, -1}, {0.1f, 0.28f, -1}};

@@ -3,6 +3,7 @@
 #include "ecs/base/rotation.h"
 #include "systems/animation/ik/joint_tree.h"
 #include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/ik/shoulder_girdle.h"
 #include "systems/animation/walk/walk_plan.h"
 #include "systems/animation/walk/walk_pose.h"
 #include "systems/animation/walk/walk_step.h"
@@ -343,6 +344,7 @@ void apply_arm(
     const Quat fore = find_place(skeleton, skeleton.rest, arm.fore).rotation;
     set_joint_rotation(skeleton, arm.upper, upper_turn * upper, weight, pose);
     set_joint_rotation(skeleton, arm.fore, fore_turn * fore, weight, pose);
+    raise_collar(skeleton, {arm.collar, arm.upper, arm.fore}, weight, pose);
 }
 
 /// Turns a joint back about an axis in the character's space.
@@ -367,7 +369,7 @@ void reach_with_hand(
             {.pole = Vec3(0, -0.8f, 0) + 0.7f * sign * frame.left - 0.3f * frame.forward,
              .softness = 0.02f * leg_length(body)},
         .weight = weight};
-    reach_with_limb(skeleton, {arm.upper, arm.fore, arm.hand}, reach, pose);
+    reach_with_arm(skeleton, arm.collar, {arm.upper, arm.fore, arm.hand}, reach, pose);
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ void find_arm(const SkeletonData& skeleton, const BodyJoints& body, bool is_left
     arm.upper = at(BodyPart::LeftUpperArm, BodyPart::RightUpperArm);
     arm.fore = at(BodyPart::LeftForearm, BodyPart::RightForearm);
     arm.hand = at(BodyPart::LeftHand, BodyPart::RightHand);
+    arm.collar = at(BodyPart::LeftShoulder, BodyPart::RightShoulder);
     if (std::max({arm.upper, arm.fore, arm.hand}) == BodyJoints::kNoJoint) {
         arm = {};
         return;

@@ -28,8 +28,9 @@ struct WalkArm {
     std::uint16_t upper = 0xffff;
     std::uint16_t fore = 0xffff;
     std::uint16_t hand = 0xffff;
-    Vec3 upper_way = {1, 0, 0};  ///< from shoulder to elbow, unit
-    Vec3 fore_way = {1, 0, 0};   ///< from elbow to wrist, unit
+    std::uint16_t collar = 0xffff;  ///< 0xffff: none
+    Vec3 upper_way = {1, 0, 0};     ///< from shoulder to elbow, unit
+    Vec3 fore_way = {1, 0, 0};      ///< from elbow to wrist, unit
 };
 
 /// Where the feet of a character and its hips have to be, in its space. A walk places the feet;
