@@ -1,4 +1,5 @@
 #include "content/make/person/person.h"
+#include "ecs/base/jobs.h"
 #include "ecs/components/humanoid.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/content/posed_person.h"
@@ -332,6 +333,47 @@ TEST_CASE("person: what a shirt has on it lies outside of its cloth, within a ce
         ++found;
     }
     CHECK(found > 60);
+}
+
+TEST_CASE("person: 8,000 to 15,000 triangles, whatever the seed and whatever is worn") {
+    constexpr int kSeeds = 64;
+    // Most cloth over most bare skin, and most hair.
+    constexpr std::array<PersonShape, 4> kFull = {{
+        {.seed = 23,
+         .hair = PersonHair::Long,
+         .top = PersonTop::Coat,
+         .legs = PersonLegwear::Shorts,
+         .sleeves = PersonSleeves::Long},
+        {.seed = 133,
+         .hair = PersonHair::Long,
+         .top = PersonTop::Shirt,
+         .legs = PersonLegwear::Shorts,
+         .sleeves = PersonSleeves::Short},
+        {.seed = 91,
+         .hair = PersonHair::Long,
+         .top = PersonTop::Shirt,
+         .legs = PersonLegwear::Dress,
+         .sleeves = PersonSleeves::Short},
+        {.seed = 5,
+         .years = 5,
+         .hair = PersonHair::Long,
+         .top = PersonTop::Coat,
+         .legs = PersonLegwear::Skirt,
+         .sleeves = PersonSleeves::Long},
+    }};
+    std::array<std::size_t, kSeeds + kFull.size()> triangles{};
+    parallel_for(triangles.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const PersonShape shape =
+                i < kSeeds ? PersonShape{.seed = static_cast<int>(i)} : kFull[i - kSeeds];
+            triangles[i] = make_person(shape).indices.size() / 3;
+        }
+    });
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        CAPTURE(i);
+        CHECK(triangles[i] >= 8000);
+        CHECK(triangles[i] <= 15000);
+    }
 }
 
 TEST_CASE("person: a seed is always the same person, another seed another one") {

@@ -21,7 +21,7 @@ struct PatternStrand {
     float phase;   ///< of the waves [rad]
     float length;  ///< along v
     float shade;   ///< factor of the color
-    float slope;   ///< toward the viewer, rise per length: moves highlights
+    float slope;   ///< toward the viewer, largest rise per length: moves highlights
     float layer;   ///< 0: bottom, 1: top
 };
 
@@ -50,6 +50,7 @@ std::vector<PatternStrand> strands_of(const HairPattern& pattern) {
 PatternMaps make_hair(const HairPattern& pattern) {
     const std::vector<PatternStrand> strands = strands_of(pattern);
     constexpr float kRoots = 0.02f;  // so that the image repeats
+    constexpr float kWaves = 3.0f;
     const float half = 0.5f * pattern.width / static_cast<float>(pattern.count);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         PatternTexel t;
@@ -69,8 +70,10 @@ PatternMaps make_hair(const HairPattern& pattern) {
                 top = strand.layer;
                 t.opacity = 1;
                 t.color = Vec3(0.7f * strand.shade * (0.55f + 0.45f * strand.layer));
+                // Up and down in waves: without steps, which would shine as bars across.
+                const float wave = 2 * kPi * kWaves;
                 t.height = half * (0.35f * std::sqrt(1 - x * x) + strand.layer)
-                           + strand.slope * std::fmod(uv.y, 0.125f);
+                           + strand.slope / wave * std::sin(wave * uv.y + strand.phase);
             }
         }
         return t;

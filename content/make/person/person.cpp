@@ -58,7 +58,9 @@ MeshData make_skin(const PersonFrame& frame) {
     if (frame.look.shape.legs != PersonLegwear::Trousers) {
         BodyMesh leg;
         add_leg(leg, frame, hems.leg + 0.06f);
-        append_part(mesh, finish_half(leg, frame, kSmooth, false));
+        MeshData legs = finish_half(leg, frame, kSmooth, false);
+        thin_out(legs, frame, kSkinThinning, kSmooth);
+        append_part(mesh, legs);
     }
     return mesh;
 }
@@ -81,15 +83,19 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
         mesh.face_outwards();
         whole = mesh.finish(frame, kSmooth);
         if (!whole.indices.empty()) {
-            thin_out(whole, frame, 0.7f * kThinning, kSmooth);
+            thin_out(whole, frame, 0.95f * kThinning, kSmooth);
         }
         return whole;
     case PersonPart::Shirt:
         add_shirt(mesh, frame);
         add_shirt_trims(trims, frame);
-        // What has no trims affords more triangles.
+        // What has no trims affords more triangles, what reaches to the knees fewer.
         return finish_garment(
-            mesh, trims, frame, (trims.vertices.empty() ? 0.5f : 0.82f) * kThinning);
+            mesh, trims, frame,
+            (trims.vertices.empty()                    ? 0.5f
+             : frame.look.shape.top == PersonTop::Coat ? 1.05f
+                                                       : 0.9f)
+                * kThinning);
     case PersonPart::Trousers:
         add_trousers(mesh, frame);
         add_trouser_trims(trims, frame);

@@ -109,14 +109,16 @@ float neckline_drop(const PersonFrame& frame, float height, float angle) {
     const float ramp = glm::smoothstep(1.40f, 1.49f, height);
     const float front = square(0.5f + 0.5f * std::cos(angle));
     const float woman = 1 - frame.man;
+    // Necks of children are short: all around below the jaw.
+    const float low = 0.024f * frame.infant * ramp;
     switch (frame.look.shape.top) {
     case PersonTop::Tee:
-        return (0.030f + 0.014f * woman) * ramp * front;
+        return low + (0.030f + 0.014f * woman) * ramp * front;
     case PersonTop::Shirt:
     case PersonTop::Coat:
-        return 0.020f * ramp * front;
+        return low + 0.020f * ramp * front;
     default:
-        return 0.014f * ramp * front;
+        return low + 0.014f * ramp * front;
     }
 }
 

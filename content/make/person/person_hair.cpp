@@ -24,6 +24,9 @@ namespace {
 constexpr Vec3 kSkull = {0, 5.5f, -0.5f};
 constexpr int kHairColumns = 36;
 constexpr int kHairRows = 11;
+constexpr int kHangingColumns = 60;  ///< of hair that falls, near: four per clump
+constexpr int kHangingRows = 13;
+constexpr int kClumps = 15;
 constexpr int kPartColumn = 3;          ///< of the parting, from the middle
 constexpr float kBunElevation = 0.45f;  ///< [rad]
 
@@ -91,7 +94,7 @@ class HairBuilder {
   public:
     HairBuilder(BodyMesh& mesh, const PersonFrame& frame)
         : mesh_(mesh), frame_(frame), shape_(person_head_shape(frame)),
-          style_(frame.look.shape.hair),
+          style_(frame.look.shape.hair), is_near_(has_face_shapes(frame.look.shape)),
           part_((frame.look.folds & 1u) != 0 ? kPartColumn : -kPartColumn) {}
 
     void add() {
@@ -99,18 +102,17 @@ class HairBuilder {
             return;
         }
         add_shell();
-        const bool is_near = has_face_shapes(frame_.look.shape);
         if (style_ == PersonHair::Bun) {
             add_bun();
         }
-        if (is_near) {
+        if (is_near_) {
             add_locks();
         }
     }
 
   private:
     [[nodiscard]] Vec3 in_body(const Vec3& p) const {
-        return frame_.head_origin + 0.01f * frame_.head_scale * skew_head(p, shape_);
+        return head_in_body(frame_, skew_head(p, shape_));
     }
 
     std::uint32_t add_point(const Vec3& p, const Vec3& color) {
@@ -127,6 +129,16 @@ class HairBuilder {
 
     [[nodiscard]] bool hangs() const {
         return style_ == PersonHair::Bob || style_ == PersonHair::Long;
+    }
+
+    /// Strands that fall together: 1 on the ridge of a clump, 0 in the groove beside it. Shallow on
+    /// the skull; none from afar.
+    [[nodiscard]] float clump(float angle, float t) const {
+        if (!is_near_ || !hangs()) {
+            return 0;
+        }
+        const float drift = noise(2 * std::sin(angle) + 5, 2 * std::cos(angle) + 0.8f * t, 4);
+        return std::abs(std::sin(0.5f * kClumps * angle + 1.3f * drift));
     }
 
     [[nodiscard]] Vec3 on_skull(float angle, float elevation) const {
@@ -177,9 +189,11 @@ class HairBuilder {
         constexpr float kEquator = 0.02f;  // elevation where hair leaves the skull
         constexpr float kTop = 0.5f * kPi;
         constexpr float kArc = 13.5f;  // from the crown to there
-        const float edge = edge_height(edge_keys(style_), angle);
+        const float edge = edge_height(edge_keys(style_), angle) - 1.1f * clump(angle, 1)
+                           + (hangs() ? 0.6f * noise(4 * angle, 0.7f, 5) : 0.0f);
         const float last = std::atan2(edge - kSkull.y, 9.2f);
-        const float thick = thickness(angle, t);
+        const float thick =
+            thickness(angle, t) + 0.5f * (clump(angle, t) - 0.6f) * glm::smoothstep(0.1f, 0.6f, t);
         const auto on_head = [&](float elevation) {
             const Vec3 p = on_skull(angle, elevation);
             return HairPlace{
@@ -212,7 +226,7 @@ class HairBuilder {
     /// Ends are thin.
     [[nodiscard]] static Vec3 outer(const HairPlace& place, float t) {
         const float ends = glm::smoothstep(0.80f, 1.0f, t);
-        const float least = place.falls ? 0.7f * place.thick : 0.12f;
+        const float least = place.falls ? 0.7f * place.thick : 0.22f;
         return place.root + std::lerp(place.thick, least, ends * ends) * place.out;
     }
 
@@ -227,15 +241,18 @@ class HairBuilder {
     /// One closed surface: the outer side, and the inner one up to the skull.
     void add_shell() {
         constexpr int kInnerRows = 5;
+        const bool fine = is_near_ && hangs();
+        const int columns = fine ? kHangingColumns : kHairColumns;
+        const int rows = fine ? kHangingRows : kHairRows;
         std::vector<BodyRing> rings;
-        const auto angle_of = [](int j) {
-            return 2 * kPi * (static_cast<float>(j) / kHairColumns - 0.5f);
+        const auto angle_of = [columns](int j) {
+            return 2 * kPi * (static_cast<float>(j) / static_cast<float>(columns) - 0.5f);
         };
-        for (int r = 1; r <= kHairRows; ++r) {
+        for (int r = 1; r <= rows; ++r) {
             BodyRing ring;
-            const float t = static_cast<float>(r) / kHairRows;
+            const float t = static_cast<float>(r) / static_cast<float>(rows);
             ring.v = 0.16f * t;
-            for (int j = 0; j < kHairColumns; ++j) {
+            for (int j = 0; j < columns; ++j) {
                 const float angle = angle_of(j);
                 ring.vertices.push_back(add_point(outer(place(angle, t), t), color_at(angle, t)));
             }
@@ -244,27 +261,27 @@ class HairBuilder {
         for (int r = 0; r < kInnerRows; ++r) {
             BodyRing ring;
             // Those of the outer side, every second where it hangs.
-            const int row = kHairRows - (hangs() ? 2 * r : r);
+            const int row = rows - (hangs() ? 2 * r : r);
             ring.v = 0.16f + 0.012f * static_cast<float>(r + 1);
-            for (int j = 0; j < kHairColumns; ++j) {
+            for (int j = 0; j < columns; ++j) {
                 const float angle = angle_of(j);
-                const float t = static_cast<float>(row) / kHairRows;
+                const float t = static_cast<float>(row) / static_cast<float>(rows);
                 const HairPlace at = place(angle, t);
                 const Vec3 inner = at.root - (at.falls ? 0.2f : 0.5f) * at.out;
                 ring.vertices.push_back(add_point(inner, 0.4f * color_at(angle, t)));
             }
             rings.push_back(ring);
         }
-        constexpr float kColumn = 0.5f / kHairColumns;
+        const float column = 0.5f / static_cast<float>(columns);
         Vec3 mean(0);
         for (const std::uint32_t v : rings.front().vertices) {
-            mean += mesh_.vertices[v].position / static_cast<float>(kHairColumns);
+            mean += mesh_.vertices[v].position / static_cast<float>(columns);
         }
-        mesh_.cap(rings.front(), in_body(outer(place(0, 0), 0)) - mean, kColumn, false);
+        mesh_.cap(rings.front(), in_body(outer(place(0, 0), 0)) - mean, column, false);
         for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
-            mesh_.join(rings[r], rings[r + 1], kColumn);
+            mesh_.join(rings[r], rings[r + 1], column);
         }
-        mesh_.cap(rings.back(), Vec3(0), kColumn, true);
+        mesh_.cap(rings.back(), Vec3(0), column, true);
     }
 
     struct LockPoint {
@@ -278,6 +295,7 @@ class HairBuilder {
         const std::vector<LockPoint>& path, float half, float height, float tip, float shade,
         float from) {
         constexpr float kSunk = 0.3f;
+        constexpr float kRootEnd = 0.01f;  // textures of strands begin with a gap
         BodyRing last;
         float length = 0;
         const std::size_t count = path.size();
@@ -296,7 +314,7 @@ class HairBuilder {
                     * std::lerp(0.85f, 1.15f, std::lerp(from, 1.0f, s)),
                 Vec3(1));
             BodyRing ring;
-            ring.v = 0.01f * length;
+            ring.v = kRootEnd + 0.01f * length;
             const Vec3 low = center - kSunk * path[i].out;
             ring.vertices = {
                 add_point(low - wide * side, 0.75f * color),
@@ -355,12 +373,12 @@ class HairBuilder {
             }
             return;
         }
-        // From the parting to both sides and, from the crown, to the back.
-        constexpr int kLocks = 22;
+        // From the parting to both sides of the face; the rest falls in clumps.
+        constexpr int kLocks = 8;
         constexpr float kFaceEdge = 0.8f;  // beside the forehead [rad]
         for (int k = 0; k < kLocks; ++k) {
             const float way = k % 2 == 0 ? 1.0f : -1.0f;
-            const float away = static_cast<float>(k / 2) / (kLocks / 2 - 1);
+            const float away = 0.1f * static_cast<float>(k / 2);
             const float vary = noise(1.9f * static_cast<float>(k) + 0.2f, 0.8f, 3);
             const float begin = std::lerp(0.8f, 0.08f, std::min(2.2f * away, 1.0f));
             add_flow(
@@ -431,6 +449,7 @@ class HairBuilder {
     const PersonFrame& frame_;
     HeadShape shape_;
     PersonHair style_;
+    bool is_near_;
     int part_;  ///< column of the parting, counted from the front
 };
 

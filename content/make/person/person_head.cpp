@@ -75,16 +75,6 @@ bool is_in_mouth(const HeadVertex& vertex) {
     return vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop;
 }
 
-/// From the space of the head [cm]. A child's face is short and narrow below the eyes.
-Vec3 in_body(const PersonFrame& frame, Vec3 p) {
-    constexpr float kEyeLine = 3.5f;
-    const float below = glm::smoothstep(kEyeLine, -4.0f, p.y) * glm::smoothstep(-13.5f, -8.0f, p.y);
-    p.y = kEyeLine + (p.y - kEyeLine) * (1 - 0.13f * frame.child * below);
-    p.x *= 1 - 0.05f * frame.child * below;
-    p.z -= 0.5f * frame.child * below;
-    return frame.head_origin + 0.01f * frame.head_scale * p;
-}
-
 void append_triangles(WovenHead& head, const std::array<std::uint32_t, 4>& quad) {
     const auto length = [&](int a, int b) {
         return glm::distance(head.positions[quad[a]], head.positions[quad[b]]);
@@ -158,7 +148,7 @@ WovenHead weave_head(const PersonFrame& frame) {
     for (std::uint32_t v = 0; v < wrapped.size(); ++v) {
         const HeadVertex& vertex = layout.vertices[v];
         wrapped[v] = opens ? part_lips(vertex, wrapped[v]) : wrapped[v];
-        head.positions.push_back(in_body(frame, wrapped[v]));
+        head.positions.push_back(head_in_body(frame, wrapped[v]));
         head.points.push_back(skin_point(vertex, wrapped[v]));
         const bool lash = !opens && vertex.loops == HeadLoops::Eye && vertex.loop == kLidLoop
                           && std::sin(vertex.angle) > 0.1f;
@@ -445,7 +435,7 @@ void add_teeth(BodyMesh& mesh, const PersonFrame& frame, float upper) {
                 (kArchWidth - corner.x) * std::sin(turn), edge + 0.95f * upper * corner.y,
                 front - corner.x - (kArchDepth - corner.x) * (1 - std::cos(turn)));
             BodyVertex vertex;
-            vertex.position = in_body(frame, p);
+            vertex.position = head_in_body(frame, p);
             vertex.color = Vec3(0.5f, 0.46f, 0.38f) * std::lerp(1.0f, 0.55f, corner.y);
             vertex.zone = BodyZone::Head;
             ring.vertices.push_back(mesh.add(vertex));
@@ -487,6 +477,15 @@ HeadShape person_head_shape(const PersonFrame& frame) {
     shape.asymmetry = frame.look.asymmetry;
     shape.scalp_shade = frame.look.shape.hair == PersonHair::Bald ? 0.25f : 0.7f;
     return shape;
+}
+
+Vec3 head_in_body(const PersonFrame& frame, Vec3 p) {
+    constexpr float kEyeLine = 3.5f;
+    const float below = glm::smoothstep(kEyeLine, -4.0f, p.y) * glm::smoothstep(-13.5f, -8.0f, p.y);
+    p.y = kEyeLine + (p.y - kEyeLine) * (1 - 0.13f * frame.child * below);
+    p.x *= 1 - 0.05f * frame.child * below;
+    p.z -= 0.5f * frame.child * below;
+    return frame.head_origin + 0.01f * frame.head_scale * p;
 }
 
 MeshData make_person_head(const PersonFrame& frame) {

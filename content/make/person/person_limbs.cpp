@@ -24,7 +24,7 @@ float hand_size(const PersonFrame& frame) {
 }
 
 Vec3 nail_color(const Vec3& skin) {
-    return glm::min(1.12f * skin + Vec3(0.07f, 0.03f, 0.03f), Vec3(1));
+    return glm::mix(skin, Vec3(0.78f, 0.52f, 0.46f), 0.22f);
 }
 /// Palms have little melanin.
 Vec3 palm_color(const Vec3& skin) {

@@ -15,6 +15,7 @@ namespace limn {
 namespace {
 
 constexpr float kTrimColumn = 0.004f;   ///< in texture space [m]
+constexpr float kLeafColumn = 0.012f;   ///< likewise, around a collar
 constexpr int kCollarTriangles = 3000;  ///< with fewer in all, there are no collars
 constexpr int kTrimTriangles = 7000;    ///< likewise, neither plackets, buttons nor pockets
 
@@ -110,8 +111,10 @@ void add_collar_leaf(BodyMesh& mesh, const PersonFrame& frame, bool coat) {
     for (const float angle : kAngles) {
         const float tip = glm::smoothstep(1.15f, 0.1f, angle) * (coat ? 0.052f : 0.034f);
         const float nape = glm::smoothstep(1.5f, 2.6f, angle) * (coat ? 0.012f : 0.006f);
-        const float edge = (coat ? 1.462f : 1.468f) - tip - nape;
-        const float lie = coat ? 0.013f : 0.0095f;
+        // Short over the shoulders, whose slope it would stand off.
+        const float short_by = 0.011f * std::exp(-square((angle - 1.5f) / 0.6f));
+        const float edge = (coat ? 1.462f : 1.468f) - tip - nape + short_by;
+        const float lie = coat ? 0.008f : 0.006f;
         const float thick = coat ? 0.004f : 0.0025f;
         const std::array<Vec2, 6> profile = {{
             {1.500f, 0.0035f},
@@ -130,9 +133,9 @@ void add_collar_leaf(BodyMesh& mesh, const PersonFrame& frame, bool coat) {
             ring.vertices.push_back(mesh.add(vertex));
         }
         if (last.vertices.empty()) {
-            mesh.cap(ring, Vec3(0), kTrimColumn, false);
+            mesh.cap(ring, Vec3(0), kLeafColumn, false);
         } else {
-            mesh.join(last, ring, kTrimColumn);
+            mesh.join(last, ring, kLeafColumn);
         }
         last = ring;
     }
