@@ -159,6 +159,7 @@ void register_all_components() {
     register_component<MotionStyle>();
     register_component<MotionMatch>();
     register_component<MotionMatchState>();
+    register_component<MatchHandover>();
     register_component<CharacterMotor>();
     register_component<MotorState>();
     register_component<MotorPose>();

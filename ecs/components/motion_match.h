@@ -20,7 +20,9 @@ namespace limn {
 
 /// With a Skeleton of a person, or of anything with joints of those names, and a MoveIntent: clips
 /// animate it, and their root motion moves its Transform. Joints that no clip animates keep the
-/// pose of its ClipPlayer.
+/// pose of its ClipPlayer. With a CharacterMotor, the motor moves it as the clips do, as far as the
+/// ground and walls let it; with a Walk and a MotorPose as well, these pose it while it jumps,
+/// wades, swims, pushes or stoops, and the poses blend into each other.
 struct MotionMatch {
     std::vector<ClipId> clips{};
     Entity walk{};
@@ -110,6 +112,9 @@ struct MotionMatchState {
     Vec2 velocity = {0, 0};
     float turn = 0.0f;
     Vec3 root = {0, 0, 0};
+    Vec2 drive = {0, 0};
+    float drive_turn = 0.0f;
+    std::uint32_t away = 0;
     std::array<MatchFoot, 2> feet{};
 };
 
@@ -131,13 +136,70 @@ LIMN_FIELDS(MotionMatchState) {
     LIMN_FIELD(steer_aim, "what it tends to", "rad/s");
     LIMN_FIELD(velocity, "of the Transform, x and z", "m/s");
     LIMN_FIELD(turn, "likewise", "rad/s");
-    LIMN_FIELD(root, "where it put the Transform", "m");
+    LIMN_FIELD(root, "where the Transform was left", "m");
+    LIMN_FIELD(drive, "velocity with which a motor moves it next, in its own space", "m/s");
+    LIMN_FIELD(drive_turn, "likewise", "rad/s");
+    LIMN_FIELD(away, "1: its Walk and its MotorPose pose it", "", 0, 1);
     LIMN_FIELD(feet, "left and right");
 }
 
 /// Not copied with a prefab: an instance has no history.
 template <>
 struct ComponentTraits<MotionMatchState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+/// What a joint showed in the last two steps, and what it is off the pose that it tends to. Feet:
+/// in the space of the character; other joints: in that of their parent.
+struct HandoverJoint {
+    Quat rotation = {1, 0, 0, 0};
+    Vec3 place = {0, 0, 0};
+    Quat last_rotation = {1, 0, 0, 0};
+    Vec3 last_place = {0, 0, 0};
+    Quat target_rotation = {1, 0, 0, 0};
+    Vec3 target_place = {0, 0, 0};
+    InertialOffset turn{};
+    InertialOffset shift{};
+};
+
+LIMN_FIELDS(HandoverJoint) {
+    LIMN_FIELD(rotation, "that it showed in the last step");
+    LIMN_FIELD(place, "likewise", "m");
+    LIMN_FIELD(last_rotation, "that it showed in the step before");
+    LIMN_FIELD(last_place, "likewise", "m");
+    LIMN_FIELD(target_rotation, "of the new pose, in the step of the handover");
+    LIMN_FIELD(target_place, "likewise", "m");
+    LIMN_FIELD(turn, "what the rotation was off the new pose");
+    LIMN_FIELD(shift, "what the place was off it");
+}
+
+enum class HandoverStage : std::uint32_t {
+    None,     ///< shows the pose as it is
+    Measure,  ///< goes on as before for a step, in which the new pose's velocity is measured
+    Fade,     ///< the offset decays
+};
+
+/// State of a MotionMatch with a CharacterMotor and a Walk: how its pose passes from one to the
+/// other.
+struct MatchHandover {
+    std::uint32_t away = 0;
+    HandoverStage stage = HandoverStage::None;
+    float clock = 0.0f;
+    std::vector<HandoverJoint> joints{};
+    std::array<HandoverJoint, 2> feet{};
+};
+
+LIMN_FIELDS(MatchHandover) {
+    LIMN_FIELD(away, "1: it shows the pose of its Walk", "", 0, 1);
+    LIMN_FIELD(stage, .doc = "of a handover", .values = "none measure fade");
+    LIMN_FIELD(clock, "since the offset was measured", "s");
+    LIMN_FIELD(joints, "all of the skeleton");
+    LIMN_FIELD(feet, "left and right ankle");
+}
+
+/// Not copied with a prefab: an instance has no history.
+template <>
+struct ComponentTraits<MatchHandover> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
 

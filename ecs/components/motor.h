@@ -49,6 +49,7 @@ enum class MotorMode : std::uint32_t {
 struct MotorState {
     Vec3 velocity = Vec3(0);
     Vec3 normal = Vec3(0, 1, 0);
+    Vec3 wall = Vec3(0);
     Entity ground{};
     Vec3 point = Vec3(0);
     Vec3 ahead = Vec3(0, 0, 1);
@@ -61,6 +62,7 @@ struct MotorState {
 LIMN_FIELDS(MotorState) {
     LIMN_FIELD(velocity, "in the world, without that of the ground", "m/s");
     LIMN_FIELD(normal, "of the ground");
+    LIMN_FIELD(wall, "normal of the wall toward which it wants to go; 0 0 0: none");
     LIMN_FIELD(ground, "entity that it stands on");
     LIMN_FIELD(point, "where, in the space of that entity", "m");
     LIMN_FIELD(ahead, "+z of the character in that space");

@@ -36,6 +36,7 @@ struct PoseModifiers {
     Query<const PoseKeysState> keys;
     Query<const TwistJoints, const TwistLinks> twists;
     Query<const MatchPose, const MotionMatchState> matches;
+    Query<MatchHandover> handovers;
     Query<const PuppetState, const PuppetBody> puppets;
 };
 
@@ -50,7 +51,7 @@ struct SystemParam<PoseModifiers>
           OptionalRes<const MotionGraphs>, OptionalRes<const MotionPlans>,
           Query<const RagdollState>, Query<const PoseKeysState>,
           Query<const TwistJoints, const TwistLinks>,
-          Query<const MatchPose, const MotionMatchState>,
+          Query<const MatchPose, const MotionMatchState>, Query<MatchHandover>,
           Query<const PuppetState, const PuppetBody>> {};
 
 }  // namespace limn

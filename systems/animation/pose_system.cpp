@@ -9,6 +9,7 @@
 #include "systems/animation/graph/graph_pose.h"
 #include "systems/animation/ik/plant_feet.h"
 #include "systems/animation/ik/pose_ik.h"
+#include "systems/animation/matching/match_handover.h"
 #include "systems/animation/matching/match_step.h"
 #include "systems/animation/pose_levels.h"
 #include "systems/animation/ragdoll/ragdoll_pose.h"
@@ -241,24 +242,35 @@ class Modifiers {
     }
 
     /// Applies what the character has, in this order. `last`: joint matrices of the last step,
-    /// empty in the first.
+    /// empty in the first; `step` [s].
     void apply(
-        Entity entity, const SkeletonData& skeleton, std::span<const Affine> last,
+        Entity entity, const SkeletonData& skeleton, std::span<const Affine> last, float step,
         LocalPose& pose) const {
         if (!any_) {
             return;
         }
-        if (const MatchPose* const match = queries_.matches.find<const MatchPose>(entity)) {
+        MatchHandover* const handover = queries_.handovers.find<MatchHandover>(entity);
+        const MatchPose* const match = queries_.matches.find<const MatchPose>(entity);
+        const bool away =
+            match != nullptr && queries_.matches.find<const MotionMatchState>(entity)->away != 0;
+        if (match != nullptr && !away) {
             apply_match_pose(*match, pose);
         }
         if (const Walk* const walk = queries_.walks.find<const Walk>(entity)) {
-            apply_walk(
-                skeleton, *walk, *queries_.walks.find<const WalkState>(entity),
-                *queries_.walks.find<const WalkBody>(entity), pose);
+            if (handover == nullptr || away) {
+                apply_walk(
+                    skeleton, *walk, *queries_.walks.find<const WalkState>(entity),
+                    *queries_.walks.find<const WalkBody>(entity), pose);
+            }
             if (const MotorPose* const motor = queries_.motor_poses.find<const MotorPose>(entity)) {
                 apply_motor_pose(
                     skeleton, *motor, *queries_.motor_poses.find<const MotorPoseState>(entity),
                     *queries_.walks.find<const WalkBody>(entity), pose);
+            }
+            if (handover != nullptr) {
+                step_handover(
+                    skeleton, *queries_.walks.find<const WalkBody>(entity), away, step, *handover,
+                    pose);
             }
         }
         if (const FootPlant* const plant = queries_.plants.find<const FootPlant>(entity)) {
@@ -336,7 +348,9 @@ void step_character(
         }
     }
     playback.is_cut = playback.is_cut || modifiers.is_cut(entity);
-    modifiers.apply(entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, scratch);
+    modifiers.apply(
+        entity, skeleton, is_new ? std::span<const Affine>() : pose.previous, playback.step,
+        scratch);
     compute_joint_matrices(skeleton, scratch, pose.joints);
     finish_step(assets, skeleton, playback, is_new, pose, morph);
 }

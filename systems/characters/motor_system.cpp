@@ -24,6 +24,7 @@ constexpr float kContactSkin = 1e-4f;    // depth of contacts that is left [m]
 constexpr int kMaxParts = 512;           // of a step
 constexpr float kThickest = 2.0f;        // wall out of which it finds a way [m]
 constexpr int kMaxContacts = 6;          // in a part
+constexpr float kWallGap = 0.08f;        // within which a wall is felt [m]
 
 Vec3 level_part(const Vec3& v) {
     return {v.x, 0, v.z};
@@ -218,6 +219,20 @@ void leave_solids(const Surroundings& around, MotorBody& body) {
         }
         body.transform.position += std::min(depth, around.radius()) * normal;
         body.state.velocity -= std::min(glm::dot(body.state.velocity, normal), 0.0f) * normal;
+        if (side > 0.7f) {
+            body.state.wall = level_part(normal) / glm::length(level_part(normal));
+        }
+    }
+}
+
+/// Forgets a wall that is no longer there, or toward which it does not want to go.
+void feel_wall(const Surroundings& around, const MoveIntent& intent, MotorBody& body) {
+    Vec3& wall = body.state.wall;
+    const Vec3 wanted = level_part(is_finite(intent.velocity) ? intent.velocity : Vec3(0));
+    if (wall != Vec3(0)
+        && (glm::dot(wanted, wall) > -1e-3f
+            || !around.touch(body.transform.position - kWallGap * wall))) {
+        wall = Vec3(0);
     }
 }
 
@@ -289,7 +304,8 @@ bool is_valid(const CharacterMotor& motor, const MotorBody& body) {
 
 MotorBody step_motor(
     const CharacterMotor& motor, const MoveIntent& intent, const MotorBody& body,
-    std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt) {
+    std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt,
+    const std::optional<MotorDrive>& drive) {
     if (!is_valid(motor, body) || !(dt >= 0)) {
         return body;
     }
@@ -302,8 +318,18 @@ MotorBody step_motor(
     next.state.depth = water.depth;
     next.state.air_time += dt;
     choose_mode(motor, next.state);
-    turn_body(motor, intent, dt, next.transform.rotation);
+    const bool is_driven = drive && is_finite(drive->velocity) && std::isfinite(drive->turn)
+                           && next.state.mode == MotorMode::Stand;
+    if (is_driven) {
+        next.transform.rotation = normalize_or_identity(
+            rotation_about({0, 1, 0}, drive->turn * dt) * next.transform.rotation);
+    } else {
+        turn_body(motor, intent, dt, next.transform.rotation);
+    }
     accelerate(motor, intent, water, dt, next);
+    if (is_driven && next.state.mode == MotorMode::Stand) {
+        next.state.velocity = shortened_to(level_part(drive->velocity), kMotorTopSpeed);
+    }
     const float way = glm::length(next.state.velocity) * dt;
     const int parts =
         std::clamp(static_cast<int>(std::ceil(2 * way / around.radius())), 1, kMaxParts);
@@ -313,6 +339,7 @@ MotorBody step_motor(
         leave_solids(around, next);
         meet_ground(around, part, next);
     }
+    feel_wall(around, intent, next);
     return next;
 }
 
@@ -324,17 +351,25 @@ void add_motor_states(
 }
 
 void update_motors(
-    Query<const CharacterMotor, MoveIntent, MotorState, Transform, Without<Parent>> motors,
+    Query<
+        const CharacterMotor, Optional<const MotionMatchState>, MoveIntent, MotorState, Transform,
+        Without<Parent>>
+        motors,
     GroundQueries grounds, WaterQuery waters, Res<const FrameTime> time) {
     if (motors.empty()) {
         return;
     }
     const std::vector<PlacedGround> placed = place_grounds(grounds);
     const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
-    motors.each([&](const CharacterMotor& motor, MoveIntent& intent, MotorState& state,
-                    Transform& transform) {
-        const MotorBody body =
-            step_motor(motor, intent, {transform, state, false}, placed, surfaces, time->step);
+    motors.each([&](const CharacterMotor& motor, const MotionMatchState* match, MoveIntent& intent,
+                    MotorState& state, Transform& transform) {
+        std::optional<MotorDrive> drive;
+        if (match != nullptr && match->started != 0 && match->away == 0) {
+            const Vec3 velocity = transform.rotation * Vec3(match->drive.x, 0, match->drive.y);
+            drive = {velocity, match->drive_turn};
+        }
+        const MotorBody body = step_motor(
+            motor, intent, {transform, state, false}, placed, surfaces, time->step, drive);
         transform = body.transform;
         state = body.state;
         intent.jump = intent.jump && !body.jumped;

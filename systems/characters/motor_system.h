@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/motion_match.h"
 #include "ecs/components/motor.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/time.h"
@@ -8,6 +9,7 @@
 #include "systems/characters/grounds.h"
 #include "systems/water/water_query.h"
 
+#include <optional>
 #include <span>
 
 namespace limn {
@@ -23,11 +25,18 @@ struct MotorBody {
     bool jumped = false;
 };
 
+/// How clips move one that stands, in place of its own acceleration and turn.
+struct MotorDrive {
+    Vec3 velocity = Vec3(0);  ///< horizontal, in the world [m/s]
+    float turn = 0.0f;        ///< about +y [rad/s]
+};
+
 /// Moves it by a step of `dt` >= 0 [s], in parts of at most half a radius. Whatever the intent
 /// holds, the result is finite; a motor that is not finite stays where it is.
 [[nodiscard]] MotorBody step_motor(
     const CharacterMotor& motor, const MoveIntent& intent, const MotorBody& body,
-    std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt);
+    std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt,
+    const std::optional<MotorDrive>& drive = {});
 
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
@@ -35,7 +44,10 @@ void add_motor_states(
 
 /// After everything that moves grounds.
 void update_motors(
-    Query<const CharacterMotor, MoveIntent, MotorState, Transform, Without<Parent>> motors,
+    Query<
+        const CharacterMotor, Optional<const MotionMatchState>, MoveIntent, MotorState, Transform,
+        Without<Parent>>
+        motors,
     GroundQueries grounds, WaterQuery waters, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/foot_plant.h"
+#include "ecs/components/motion_match.h"
 #include "ecs/snapshot.h"
 #include "systems/animation/walk/apply_motor_pose.h"
 #include "tests/near.h"
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -402,6 +405,228 @@ TEST_CASE("motor pose: long steps, none, and numbers that are not finite") {
     LocalPose pose = person.rest;
     apply_motor_pose(person, {}, state, legless, pose);
     CHECK(pose.rotations == person.rest.rotations);
+}
+
+namespace {
+
+/// The same, walking by motion matching.
+struct MatchedStage : PoseStage {
+    explicit MatchedStage(std::vector<MeshData> meshes = {}, const MotionMatch& match = {})
+        : PoseStage(std::move(meshes)) {
+        world.add(person, match);
+        step(60);
+    }
+    [[nodiscard]] const MotionMatchState& match() {
+        return world.get<const MotionMatchState>(person);
+    }
+    [[nodiscard]] bool is_away() { return match().away != 0; }
+    /// Whether a foot is on the ground, by what poses it.
+    [[nodiscard]] bool is_planted(std::uint32_t side) {
+        return is_away() ? motion().off_ground == 0 && flight_progress(walk(), side) >= 1
+                         : match().feet[side].planted == 1;
+    }
+    /// Heel and ball of a foot.
+    [[nodiscard]] std::array<Vec3, 2> sole(std::uint32_t side) {
+        const WalkLeg& leg = body().legs[side];
+        const Affine& ankle = world.get<const Pose>(person).joints[leg.foot];
+        const Affine& root = world.get<const WorldTransform>(person).world;
+        return {
+            transform_point(root, transform_point(ankle, leg.heel - leg.ankle)),
+            transform_point(root, transform_point(ankle, leg.ball - leg.ankle))};
+    }
+};
+
+/// Joints whose motion is looked at.
+std::vector<std::uint16_t> shown_joints(const WalkBody& body) {
+    std::vector<std::uint16_t> joints = {body.hips, body.head};
+    for (std::size_t i = 0; i < 2; ++i) {
+        joints.insert(
+            joints.end(),
+            {body.legs[i].shin, body.legs[i].foot, body.arms[i].fore, body.arms[i].hand});
+    }
+    return joints;
+}
+
+struct Smoothness {
+    float fastest = 0;  ///< of joints, relative to the root [m/s]
+    float jerk = 0;     ///< largest second difference of their places [m]
+};
+
+/// Jumps, and goes on for three seconds. `visit`: after each step, with whether it flies.
+template <typename Visit>
+Smoothness watch_jump(PoseStage& stage, Visit&& visit) {
+    const std::vector<std::uint16_t> joints = shown_joints(stage.body());
+    std::vector<std::array<Vec3, 3>> shown(joints.size());
+    Smoothness found;
+    stage.jump();
+    for (int i = 0; i < 180; ++i) {
+        stage.step();
+        visit(stage.state().mode == MotorMode::Fall);
+        for (std::size_t k = 0; k < joints.size(); ++k) {
+            std::array<Vec3, 3>& last = shown[k];
+            std::rotate(last.begin(), last.begin() + 2, last.end());
+            last[0] = stage.joint(joints[k]) - stage.feet();
+            if (i > 2) {
+                found.fastest = std::max(found.fastest, glm::distance(last[0], last[1]) / kFrame);
+                found.jerk = std::max(found.jerk, glm::length(last[0] - 2.0f * last[1] + last[2]));
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "matched hero: goes where it is told as fast as it is told, by motion matching, and stops"
+    * technique("char.motion-select")) {
+    for (const float speed : {1.4f, 4.2f}) {
+        CAPTURE(speed);
+        MatchedStage stage;
+        CHECK_FALSE(stage.is_away());
+        stage.go({speed, 0, 0});
+        stage.step(300);
+        const Vec3 begin = stage.feet();
+        stage.step(60);
+        CHECK(!stage.is_away());
+        CHECK(std::abs(stage.feet().x - begin.x - speed) < 0.1f * speed);
+        CHECK(std::abs(stage.feet().z - begin.z) < 0.1f * speed);
+        CHECK(double(stage.feet().y) == near(0).epsilon(1e-3));
+        stage.go(Vec3(0));
+        stage.step(150);
+        const Vec3 end = stage.feet();
+        stage.step(60);
+        CHECK(glm::distance(stage.feet(), end) < 0.02f);
+        CHECK(stage.match().transitions > 2);
+    }
+}
+
+TEST_CASE(
+    "matched hero: planted feet do not slide as it starts, turns, runs and stops"
+    * technique("char.blend")) {
+    MatchedStage stage;
+    std::array<std::array<Vec3, 2>, 2> before{};
+    std::array<float, 2> way{};
+    std::array<bool, 2> was{};
+    float slide = 0;
+    int planted = 0;
+    const std::array<Vec3, 5> tour = {
+        Vec3(0, 0, 1.4f), Vec3(1.4f, 0, 0), Vec3(4.2f, 0, 0), Vec3(0, 0, -1.4f), Vec3(0)};
+    for (const Vec3& wanted : tour) {
+        stage.go(wanted);
+        for (int i = 0; i < 120; ++i) {
+            stage.step();
+            for (std::uint32_t side = 0; side < 2; ++side) {
+                const std::array<Vec3, 2> now = stage.sole(side);
+                const auto moved = [&](std::size_t k) {
+                    const Vec3 off = now[k] - before[side][k];
+                    return std::hypot(off.x, off.z);
+                };
+                const bool is_planted = stage.is_planted(side);
+                way[side] =
+                    is_planted && was[side] ? way[side] + std::min(moved(0), moved(1)) : 0.0f;
+                was[side] = is_planted;
+                before[side] = now;
+                planted += is_planted ? 1 : 0;
+                slide = std::max(slide, way[side]);
+            }
+        }
+    }
+    CHECK(planted > 400);
+    CHECK(slide < 0.002f);
+}
+
+TEST_CASE(
+    "matched hero: jumps from a walk and a run, lands in it, and joints are as smooth as always"
+    * technique("char.blend")) {
+    for (const float speed : {0.0f, 1.4f, 4.2f}) {
+        CAPTURE(speed);
+        PoseStage plain;
+        plain.go({0, 0, speed});
+        plain.step(200);
+        const Smoothness usual = watch_jump(plain, [](bool) {});
+        MatchedStage stage;
+        stage.go({0, 0, speed});
+        stage.step(200);
+        bool was_away = false;
+        bool flew = false;
+        const Smoothness found = watch_jump(stage, [&](bool flies) {
+            was_away = was_away || stage.is_away();
+            flew = flew || flies;
+        });
+        CHECK(was_away);
+        CHECK(flew);
+        CHECK_FALSE(stage.is_away());
+        CHECK(double(stage.state().velocity.z) == near(double(speed)).epsilon(0.15));
+        CHECK(found.fastest < 14);
+        CHECK(found.jerk < usual.jerk + 0.02f);
+    }
+}
+
+TEST_CASE("matched hero: stops at a wall, and goes on along it") {
+    MatchedStage stage({make_box_mesh({-6, 0, 2}, {6, 3, 2.5f})});
+    stage.go({0, 0, 1.4f});
+    stage.step(300);
+    CHECK(stage.feet().z < 2 - 0.27f);
+    CHECK(stage.feet().z > 1.4f);
+    CHECK(glm::length(stage.match().velocity) < 0.1f);
+    const std::uint32_t transitions = stage.match().transitions;
+    stage.step(120);
+    CHECK(stage.match().transitions < transitions + 6);  // and does not walk on the spot
+    stage.go({1, 0, 1});
+    const float begin = stage.feet().x;
+    stage.step(180);
+    CHECK(stage.feet().x > begin + 1);
+    CHECK(stage.feet().z < 2 - 0.27f);
+}
+
+TEST_CASE("matched hero: wades and pushes by the poses of its motor, and walks on by clips") {
+    MatchedStage stage;
+    stage.world.create(Transform{.position = {0, 0.9f, 5}}, Water{.size = {6, 4}, .depth = 0.9f});
+    bool waded = false;
+    stage.go({0, 0, 1.4f});
+    for (int i = 0; i < 900 && stage.feet().z < 9; ++i) {
+        stage.step();
+        waded = waded || (stage.is_away() && stage.motion().wade.value > 0.3f);
+    }
+    CHECK(waded);
+    CHECK(stage.feet().z >= 9);
+    CHECK_FALSE(stage.is_away());
+
+    MatchedStage pusher;
+    const Entity crate = pusher.world.create(
+        Transform{.position = {0, 0.5f, 2.2f}},
+        LooseBody{.radius = 0.5f, .mass = 40, .bounce = 0, .rolls = false});
+    pusher.go({0, 0, 0.9f});
+    bool pushed = false;
+    for (int i = 0; i < 240; ++i) {
+        pusher.step();
+        pushed = pushed || (pusher.is_away() && pusher.motion().push.value > 0.8f);
+    }
+    CHECK(pushed);
+    CHECK(pusher.world.get<const Transform>(crate).position.z > 2.6f);
+    pusher.go(Vec3(0));
+    pusher.step(90);
+    CHECK_FALSE(pusher.is_away());
+}
+
+TEST_CASE("matched hero: a snapshot in mid-jump and in a handover continues with the same bits") {
+    for (const int frames : {3, 12, 60}) {
+        MatchedStage stage;
+        stage.go({0, 0, 3});
+        stage.step(90);
+        stage.jump();
+        stage.step(frames);
+        const Result<std::vector<std::byte>> saved = save_snapshot(stage.world);
+        REQUIRE(saved.ok());
+        MatchedStage again;
+        REQUIRE(restore_snapshot(again.world, saved.value()).ok());
+        for (int i = 0; i < 90; ++i) {
+            stage.step();
+            again.step();
+            REQUIRE(state_hash(again.world) == state_hash(stage.world));
+        }
+    }
 }
 
 }  // namespace limn::motor_pose_test

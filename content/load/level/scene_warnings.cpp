@@ -79,7 +79,7 @@ constexpr Need kNeeds[] = {
     {"motion_graph", {"skeleton", "", ""}},
     {"motion_style", {"motion_graph", "", ""}},
     {"motion_match", {"skeleton", "", ""}},
-    {"motion_match", {"move_intent", "", ""}},
+    {"motion_match", {"move_intent", "character_motor", ""}},
     {"hero", {"character_motor", "", ""}},
     {"motor_pose", {"character_motor", "", ""}},
     {"motor_pose", {"walk", "", ""}},

@@ -56,6 +56,10 @@ float fading_share(float duration, float time) {
     return 1 - s * s * (3 - 2 * s);
 }
 
+Vec3 level(const Vec3& v) {
+    return {v.x, 0, v.z};
+}
+
 const MatchClip& playing(const MatchContext& context, const MotionMatchState& state) {
     return context.database.clips[state.clip];
 }
@@ -232,6 +236,10 @@ MatchWish find_wish(const MatchContext& context, const MoveIntent& intent) {
     const Vec2 facing(intent.facing.x, intent.facing.z);
     wish.velocity =
         is_finite(intent.velocity) ? glm::clamp(velocity, Vec2(-1e3f), Vec2(1e3f)) : Vec2(0);
+    if (context.motor != nullptr) {  // nobody wants to walk into a wall
+        const Vec2 wall(context.motor->wall.x, context.motor->wall.z);
+        wish.velocity -= std::min(glm::dot(wish.velocity, wall), 0.0f) * wall;
+    }
     wish.facing = is_finite(intent.facing) ? facing : Vec2(0);
     wish.response = std::max(finite_or(context.match.response, 0.22f), 0.02f);
     wish.acceleration = std::max(finite_or(context.match.acceleration, 3.0f), 0.1f);
@@ -319,21 +327,22 @@ void search(
     state.steer_aim = can_steer ? find_steering(context, query, played) : 0.0f;
 }
 
-/// Moves ahead in the clip, and the character with it.
-void advance(const MatchContext& context, float dt, Transform& transform, MotionMatchState& state) {
+/// How the character moves in the next `dt`, in its own space.
+GroundMove next_move(const MatchContext& context, const MotionMatchState& state, float dt) {
     const MatchClip& clip = playing(context, state);
-    const GroundMove before = root_of(clip, state.time);
-    state.time = std::min(state.time + dt, clip.duration);
-    GroundMove move = compose(inverse(before), root_of(clip, state.time));
+    const float end = std::min(state.time + dt, clip.duration);
+    GroundMove move = compose(inverse(root_of(clip, state.time)), root_of(clip, end));
     if (state.blending != 0) {
         const float blend = context.match.blend;
         const float way = fading_way(blend, state.clock + dt) - fading_way(blend, state.clock);
         move.way += way * state.drift;
         move.yaw += way * state.drift_turn;
-        state.clock += dt;
     }
-    state.steering += (1 - std::exp(-dt / kSteerResponse)) * (state.steer_aim - state.steering);
     move.yaw += state.steering * dt;
+    return move;
+}
+
+void move_root(const GroundMove& move, float dt, Transform& transform, MotionMatchState& state) {
     const Vec3 way =
         transform.rotation * (uniform_scale(transform) * Vec3(move.way.x, 0, move.way.y));
     transform.position += way;
@@ -343,6 +352,27 @@ void advance(const MatchContext& context, float dt, Transform& transform, Motion
     }
     state.velocity = Vec2(way.x, way.z) / dt;
     state.turn = move.yaw / dt;
+}
+
+/// The motor has moved the root; feet go up and down with it.
+void follow_motor(const MotorState& motor, const Transform& transform, MotionMatchState& state) {
+    const float climbed = transform.position.y - state.root.y;
+    for (MatchFoot& foot : state.feet) {
+        foot.place.y += climbed;
+        foot.aim.y += climbed;
+    }
+    state.velocity = {motor.velocity.x, motor.velocity.z};
+    state.turn = state.drive_turn;
+}
+
+/// Moves ahead in the clip, and the character with it.
+void advance(const MatchContext& context, float dt, Transform& transform, MotionMatchState& state) {
+    state.steering += (1 - std::exp(-dt / kSteerResponse)) * (state.steer_aim - state.steering);
+    if (context.motor == nullptr) {
+        move_root(next_move(context, state, dt), dt, transform, state);
+    }
+    state.time = std::min(state.time + dt, playing(context, state).duration);
+    state.clock += state.blending != 0 ? dt : 0.0f;
     thread_local LocalPose pose;
     thread_local LocalPose shown;
     sample_clip_pose(context, state, 0, pose);
@@ -424,6 +454,9 @@ void step_motion_match(
         state.velocity = Vec2(0);
         place_feet(context, transform, state);
     }
+    if (context.motor != nullptr) {
+        follow_motor(*context.motor, transform, state);
+    }
     const float interval = std::max(finite_or(context.match.interval, 0.1f), kShortestInterval);
     float left = std::isfinite(dt) ? std::clamp(dt, 0.0f, kLongestStep) : 0.0f;
     while (left > 0) {
@@ -437,6 +470,83 @@ void step_motion_match(
         left -= part;
     }
     state.root = transform.position;
+    if (context.motor != nullptr && dt > 0) {
+        const GroundMove move = next_move(context, state, dt);
+        state.drive = uniform_scale(transform) * move.way / dt;
+        state.drive_turn = move.yaw / dt;
+    }
+}
+
+void enter_motion_match(
+    const MatchContext& context, const MoveIntent& intent, const MatchHandover& shown, float dt,
+    const Transform& transform, MotionMatchState& state) {
+    const MatchDatabase& database = context.database;
+    const std::uint32_t transitions = state.transitions + 1;
+    state = {};
+    if (database.rows.count == 0 || context.motor == nullptr || !is_usable(transform)
+        || shown.joints.size() != context.skeleton.joints.size() || !(dt > 0)) {
+        return;  // begins with the next step
+    }
+    state.transitions = transitions;
+    state.root = transform.position;
+    state.velocity = {context.motor->velocity.x, context.motor->velocity.z};
+    MatchRow query = make_match_query(context, intent, state, transform);
+    const Vec3 moves = glm::conjugate(transform.rotation) * level(context.motor->velocity)
+                       / uniform_scale(transform);
+    const auto set = [&](std::size_t first, const Vec3& numbers) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::size_t at = first + static_cast<std::size_t>(axis);
+            query[at] = (numbers[axis] - database.mean[at]) * database.scale[at];
+        }
+    };
+    const auto rate = [&](const HandoverJoint& joint) {
+        return moves + (joint.place - joint.last_place) / dt;
+    };
+    for (std::size_t i = 0; i < 2; ++i) {
+        set(kMatchFeet + 3 * i, shown.feet[i].place);
+        set(kMatchFeet + 6 + 3 * i, rate(shown.feet[i]));
+    }
+    set(kMatchFeet + 12, rate(shown.joints[database.body.hips]));
+    const RowMatch found = find_nearest_row_boxes(database.rows, query, INFINITY, MatchSkip{});
+    if (found.row == kNoMatch) {
+        return;
+    }
+    const MatchPlace place = database.place_of(found.row);
+    state.clip = place.clip;
+    state.time = std::max(place.time, kVelocitySpan);
+    state.cost = found.distance;
+    state.started = 1;
+    state.blending = context.match.blend > 0 ? 1 : 0;
+    const GroundMove clip_rate = root_rate(playing(context, state), state.time);
+    state.drift = Vec2(moves.x, moves.z) - clip_rate.way;
+    state.drift_turn = -clip_rate.yaw;
+    thread_local LocalPose pose;
+    sample_clip_pose(context, state, 0, pose);
+    for (std::size_t i = 0; i < 2 && database.body.can_walk; ++i) {
+        const HandoverJoint& joint = shown.feet[i];
+        const auto in_world = [&](const Vec3& ankle, const Quat& rotation) {
+            const Vec3 ball =
+                ankle + rotation * ball_offset(context.skeleton, database.body.legs[i]);
+            return FootPoint{
+                transform.position + transform.rotation * (uniform_scale(transform) * ball),
+                transform.rotation * rotation};
+        };
+        const FootPoint now = in_world(joint.place, joint.rotation);
+        const FootPoint last = in_world(joint.last_place, joint.last_rotation);
+        MatchFoot& foot = state.feet[i];
+        foot.velocity = level(context.motor->velocity) + (now.place - last.place) / dt;
+        foot.spin = 2.0f
+                    * log_rotation(to_same_hemisphere(
+                        Quat(1, 0, 0, 0), now.rotation * glm::conjugate(last.rotation)))
+                    / dt;
+        // The root has moved on since the pose was shown, the foot by its own velocity.
+        foot.place = now.place + dt * (foot.velocity - level(context.motor->velocity));
+        foot.rotation = normalize_or_identity(exp_rotation(0.5f * dt * foot.spin) * now.rotation);
+        foot.hold = 1;
+        capture_foot(
+            find_aim(context, state, i, pose, pose), transform,
+            aim_rate(context, state, i, transform), foot);
+    }
 }
 
 void apply_match_pose(const MatchPose& match, LocalPose& pose) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/motion_match.h"
+#include "ecs/components/motor.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/transform.h"
 #include "systems/animation/matching/match_database.h"
@@ -16,6 +17,7 @@ struct MatchContext {
     const SkeletonData& skeleton;
     const MatchDatabase& database;
     const MotionMatch& match;
+    const MotorState* motor = nullptr;  ///< moves the character; null: clips do
 };
 
 /// Advances by `dt` [s], at most 10, in parts that searches divide. The first call searches in all
@@ -23,6 +25,13 @@ struct MatchContext {
 void step_motion_match(
     const MatchContext& context, const MoveIntent& intent, float dt, MotionMatchState& state,
     Transform& transform);
+
+/// Begins where another pose has ended: the frame of all that goes on from `shown` and to where the
+/// intent leads. `shown`: joints and feet in the space of the character; `dt`: between its two
+/// poses [s].
+void enter_motion_match(
+    const MatchContext& context, const MoveIntent& intent, const MatchHandover& shown, float dt,
+    const Transform& transform, MotionMatchState& state);
 
 /// The wanted path and the played pose as a row of the database.
 [[nodiscard]] MatchRow make_match_query(

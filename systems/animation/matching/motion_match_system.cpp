@@ -1,6 +1,7 @@
 #include "systems/animation/matching/motion_match_system.h"
 
 #include "ecs/base/log.h"
+#include "systems/animation/matching/match_handover.h"
 #include "systems/animation/matching/match_step.h"
 #include "systems/animation/matching/match_takes.h"
 
@@ -15,7 +16,9 @@ namespace limn {
 
 void add_match_states(
     Query<const MotionMatch, With<Skeleton>, Without<MotionMatchState>> states,
-    Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses, Commands commands) {
+    Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses,
+    Query<const MotionMatch, const MotorPose, const Walk, Without<MatchHandover>> handovers,
+    Commands commands) {
     states.each([&](Entity entity, const MotionMatch& match) {
         MotionMatchState state;
         // So that not all characters search in the same step.
@@ -25,6 +28,9 @@ void add_match_states(
         commands.add(entity, std::move(state));
     });
     poses.each([&](Entity entity, const MotionMatch&) { commands.add(entity, MatchPose{}); });
+    handovers.each([&](Entity entity, const MotionMatch&, const MotorPose&, const Walk&) {
+        commands.add(entity, MatchHandover{});
+    });
 }
 
 void prepare_match_databases(
@@ -56,28 +62,42 @@ void prepare_match_databases(
 
 void update_motion_matching(
     Query<
-        const Skeleton, const MotionMatch, Optional<const MoveIntent>, MotionMatchState, MatchPose,
-        Transform>
+        const Skeleton, const MotionMatch, Optional<const MoveIntent>, Optional<const MotorState>,
+        Optional<const MotorPoseState>, Optional<const MatchHandover>, Optional<WalkState>,
+        MotionMatchState, MatchPose, Transform>
         characters,
     Res<const Assets> assets, Res<const MatchDatabases> databases,
     OptionalRes<const FrameTime> time) {
     const float step = time ? time->step : 0.0f;
-    characters.par_each([&, step](
-                            const Skeleton& skeleton, const MotionMatch& match,
-                            const MoveIntent* intent, MotionMatchState& state, MatchPose& pose,
-                            Transform& transform) {
-        const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
-        if (database == nullptr || database->rows.count == 0) {
-            return;
-        }
-        const MatchContext context = {
-            *assets, assets->skeletons[skeleton.skeleton.index], *database, match};
-        step_motion_match(
-            context, intent != nullptr ? *intent : MoveIntent{}, step, state, transform);
-        find_match_pose(context, state, transform, pose.pose);
-        pose.turning = database->turning;
-        pose.moving = database->moving;
-    });
+    characters.par_each(
+        [&, step](
+            const Skeleton& skeleton, const MotionMatch& match, const MoveIntent* wanted,
+            const MotorState* motor, const MotorPoseState* motor_pose, const MatchHandover* shown,
+            WalkState* walk, MotionMatchState& state, MatchPose& pose, Transform& transform) {
+            const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
+            if (database == nullptr || database->rows.count == 0) {
+                return;
+            }
+            const MatchContext context = {
+                *assets, assets->skeletons[skeleton.skeleton.index], *database, match, motor};
+            const MoveIntent intent = wanted != nullptr ? *wanted : MoveIntent{};
+            if (motor != nullptr && motor_pose != nullptr && shown != nullptr && walk != nullptr) {
+                const bool away = is_more_than_walking(*motor, *motor_pose, state.away != 0);
+                if (away && state.away == 0) {
+                    leave_motion_match(context, transform, step, state, *walk);
+                } else if (!away && state.away != 0) {
+                    enter_motion_match(context, intent, *shown, step, transform, state);
+                }
+                state.away = away ? 1 : 0;
+                if (away) {
+                    return;
+                }
+            }
+            step_motion_match(context, intent, step, state, transform);
+            find_match_pose(context, state, transform, pose.pose);
+            pose.turning = database->turning;
+            pose.moving = database->moving;
+        });
 }
 
 }  // namespace limn

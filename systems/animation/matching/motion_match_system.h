@@ -3,6 +3,8 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/motion_match.h"
+#include "ecs/components/motor.h"
+#include "ecs/components/motor_pose.h"
 #include "ecs/components/move_intent.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
@@ -18,10 +20,13 @@ namespace limn {
 // Characters that are animated by motion matching (ecs/components/motion_match.h).
 // Techniques: char.blend, char.motion-select
 
-/// Adds MotionMatchState and MatchPose to every MotionMatch without them.
+/// Adds MotionMatchState and MatchPose to every MotionMatch without them, and MatchHandover to
+/// those that a MotorPose poses at times.
 void add_match_states(
     Query<const MotionMatch, With<Skeleton>, Without<MotionMatchState>> states,
-    Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses, Commands commands);
+    Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses,
+    Query<const MotionMatch, const MotorPose, const Walk, Without<MatchHandover>> handovers,
+    Commands commands);
 
 /// Makes databases that are used for the first time, with the takes of their walks. Warns of one
 /// without a frame to search; its characters keep their other poses.
@@ -29,11 +34,13 @@ void prepare_match_databases(
     Query<const MotionMatch, const Skeleton> characters, Query<const Walk> walks,
     Res<const Assets> assets, Res<MatchDatabases> databases);
 
-/// Steps all characters and finds their poses. After what sets intents, before update_poses.
+/// Steps all characters and finds their poses. Those with a MotorPose leave that to it while it
+/// does more than walk. After what sets intents, before update_walks and update_poses.
 void update_motion_matching(
     Query<
-        const Skeleton, const MotionMatch, Optional<const MoveIntent>, MotionMatchState, MatchPose,
-        Transform>
+        const Skeleton, const MotionMatch, Optional<const MoveIntent>, Optional<const MotorState>,
+        Optional<const MotorPoseState>, Optional<const MatchHandover>, Optional<WalkState>,
+        MotionMatchState, MatchPose, Transform>
         characters,
     Res<const Assets> assets, Res<const MatchDatabases> databases,
     OptionalRes<const FrameTime> time);

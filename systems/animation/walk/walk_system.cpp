@@ -42,14 +42,19 @@ void update_walk_routes(
 void update_walks(
     Query<
         const Walk, Optional<const MoveIntent>, Optional<const FootContacts>,
-        Optional<const MotorState>, Optional<const MotorPoseState>, WalkState, WalkBody, Transform>
+        Optional<const MotorState>, Optional<const MotorPoseState>,
+        Optional<const MotionMatchState>, WalkState, WalkBody, Transform>
         walkers,
     OptionalRes<const FrameTime> time) {
     const float step = time ? time->step : 0.0f;
     walkers.par_each([step](
                          const Walk& walk, const MoveIntent* intent, const FootContacts* contacts,
                          const MotorState* motor, const MotorPoseState* motor_pose,
-                         WalkState& state, WalkBody& body, Transform& transform) {
+                         const MotionMatchState* match, WalkState& state, WalkBody& body,
+                         Transform& transform) {
+        if (match != nullptr && motor_pose != nullptr && match->away == 0 && state.placed != 0) {
+            return;
+        }
         const bool is_off = motor != nullptr && motor_pose != nullptr && state.placed != 0
                             && (motor->mode != MotorMode::Stand || motor_pose->off_ground != 0);
         if (is_off) {

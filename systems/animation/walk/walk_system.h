@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/foot_plant.h"
+#include "ecs/components/motion_match.h"
 #include "ecs/components/motor.h"
 #include "ecs/components/motor_pose.h"
 #include "ecs/components/move_intent.h"
@@ -33,11 +34,12 @@ void update_walk_routes(
     Res<const FrameTime> time);
 
 /// After everything else that moves characters; before update_foot_contacts and update_poses. Those
-/// with a MotorPose do not step while they fall or swim.
+/// with a MotorPose do not step while they fall or swim, nor while motion matching poses them.
 void update_walks(
     Query<
         const Walk, Optional<const MoveIntent>, Optional<const FootContacts>,
-        Optional<const MotorState>, Optional<const MotorPoseState>, WalkState, WalkBody, Transform>
+        Optional<const MotorState>, Optional<const MotorPoseState>,
+        Optional<const MotionMatchState>, WalkState, WalkBody, Transform>
         walkers,
     OptionalRes<const FrameTime> time);
 
