@@ -56,6 +56,7 @@ struct MotorState {
     float depth = -1.0f;
     float air_time = 0.0f;
     float gather = 0.0f;
+    float above = -1.0f;
     MotorMode mode = MotorMode::Fall;
 };
 
@@ -69,6 +70,7 @@ LIMN_FIELDS(MotorState) {
     LIMN_FIELD(depth, "of the water above the soles; < 0: none", "m");
     LIMN_FIELD(air_time, "since it last stood", "s");
     LIMN_FIELD(gather, "since it crouches for a jump", "s");
+    LIMN_FIELD(above, "height over the ground while it falls; < 0: farther than 4 m", "m");
     LIMN_FIELD(mode, .doc = "what it does", .values = "stand fall swim");
 }
 

@@ -17,6 +17,7 @@ namespace limn {
 /// With a Walk and a CharacterMotor: jumps, falls, lands, wades, swims, pushes, carries and throws.
 /// The Walk must not move the root.
 struct MotorPose {
+    float crouch = 0.24f;
     float give = 10.0f;
     float deepest = 0.5f;
     float tuck = 0.28f;
@@ -25,9 +26,12 @@ struct MotorPose {
 };
 
 LIMN_FIELDS(MotorPose) {
+    LIMN_FIELD(
+        crouch, "by which hips sink before a jump on the spot; less in a run", "leg lengths", 0,
+        0.6);
     LIMN_FIELD(give, "rate of the knees after landings; less: softer and deeper", "1/s", 1, 100);
     LIMN_FIELD(deepest, "that hips ever sink after landings", "leg lengths", 0, 0.7);
-    LIMN_FIELD(tuck, "height of the forward foot in a jump", "leg lengths", 0, 0.7);
+    LIMN_FIELD(tuck, "height to which feet are drawn up in a jump", "leg lengths", 0, 0.7);
     LIMN_FIELD(arms, "from the arms of the walk, 0, to those of what it does, 1", "", 0, 1);
     LIMN_FIELD(stroke, "strokes per second of a swim at full speed", "Hz", 0.05, 5);
 }

@@ -24,6 +24,7 @@ constexpr float kContactSkin = 1e-4f;    // depth of contacts that is left [m]
 constexpr int kMaxParts = 512;           // of a step
 constexpr float kThickest = 2.0f;        // wall out of which it finds a way [m]
 constexpr int kMaxContacts = 6;          // in a part
+constexpr float kLookDown = 4.0f;        // for the ground, while it falls [m]
 constexpr float kWallGap = 0.08f;        // within which a wall is felt [m]
 
 Vec3 level_part(const Vec3& v) {
@@ -236,6 +237,14 @@ void feel_wall(const Surroundings& around, const MoveIntent& intent, MotorBody& 
     }
 }
 
+void look_down(std::span<const PlacedGround> grounds, MotorBody& body) {
+    const Vec3& feet = body.transform.position;
+    const Landing below = body.state.mode == MotorMode::Fall
+                              ? find_landing(grounds, {feet, feet - Vec3(0, kLookDown, 0)})
+                              : Landing{};
+    body.state.above = below.ground != nullptr ? feet.y - below.point.y : -1.0f;
+}
+
 /// One that was put into a wall comes out on the nearest side.
 void leave_inside(
     const CharacterMotor& motor, const Surroundings& around, std::span<const PlacedGround> grounds,
@@ -340,6 +349,7 @@ MotorBody step_motor(
         meet_ground(around, part, next);
     }
     feel_wall(around, intent, next);
+    look_down(grounds, next);
     return next;
 }
 

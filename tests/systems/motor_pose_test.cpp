@@ -52,6 +52,24 @@ struct PoseStage : MotorStage {
             transform_point(world.get<const Pose>(person).joints[joint], Vec3(0)));
     }
     [[nodiscard]] float hips_height() { return joint(body().hips).y - feet().y; }
+    /// Heel and ball of a foot.
+    [[nodiscard]] std::array<Vec3, 2> sole(std::uint32_t side) {
+        const WalkLeg& leg = body().legs[side];
+        const Affine& ankle = world.get<const Pose>(person).joints[leg.foot];
+        const Affine& root = world.get<const WorldTransform>(person).world;
+        return {
+            transform_point(root, transform_point(ankle, leg.heel - leg.ankle)),
+            transform_point(root, transform_point(ankle, leg.ball - leg.ankle))};
+    }
+    /// Height of the lowest point of both soles above the ground y = 0.
+    [[nodiscard]] float clearance() {
+        float least = 1e6f;
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const std::array<Vec3, 2> points = sole(i);
+            least = std::min({least, points[0].y, points[1].y - body().legs[i].ball.y});
+        }
+        return least;
+    }
     void jump() { world.get<MoveIntent>(person).jump = true; }
     /// Until it stands after it has not stood; false: it never did.
     bool run_to_landing() {
@@ -220,6 +238,47 @@ TEST_CASE("motor pose: feet stay where they have landed until they step") {
         }
     }
     CHECK(slide < 0.002f);
+}
+
+TEST_CASE(
+    "motor pose: a jump rises as its take-off says, from a crouch, and soles clear the ground") {
+    for (const float speed : {0.0f, 1.4f, 4.2f}) {
+        CAPTURE(speed);
+        PoseStage stage;
+        stage.go({0, 0, speed});
+        stage.step(200);
+        stage.jump();
+        float lowest_hips = 1;
+        float take_off = 0;
+        float apex = 0;
+        float drawn_up = 0;
+        float lowest = 1;
+        float before_landing = 1;
+        for (int i = 0; i < 100 && (apex < 0.1f || stage.state().mode == MotorMode::Fall); ++i) {
+            stage.step();
+            const bool flies = stage.state().mode == MotorMode::Fall;
+            lowest_hips = flies ? lowest_hips : std::min(lowest_hips, stage.hips_height());
+            take_off = flies && take_off == 0 ? stage.state().velocity.y : take_off;
+            if (flies) {
+                drawn_up = stage.feet().y > apex ? stage.clearance() - stage.feet().y : drawn_up;
+                apex = std::max(apex, stage.feet().y);
+                lowest = std::min(lowest, stage.clearance());
+                before_landing = stage.state().velocity.y < 0 && stage.feet().y > 0.3f * kMotor.jump
+                                     ? std::min(before_landing, stage.clearance())
+                                     : before_landing;
+            }
+        }
+        CHECK(lowest_hips < 0.92f);
+        CHECK(lowest_hips > 0.72f);
+        // Half a step of gravity is taken off at once.
+        CHECK(
+            double(take_off) + 0.5 * 9.81 / 60
+            == near(std::sqrt(2 * 9.81 * double(kMotor.jump))).epsilon(1e-3));
+        CHECK(double(apex) == near(double(kMotor.jump)).epsilon(0.01));
+        CHECK(drawn_up > 0.1f);
+        CHECK(lowest > -1e-3f);
+        CHECK(before_landing > 0.2f);
+    }
 }
 
 TEST_CASE("motor pose: joints do not jump at take-off, in the air and at the landing") {
@@ -424,15 +483,6 @@ struct MatchedStage : PoseStage {
     [[nodiscard]] bool is_planted(std::uint32_t side) {
         return is_away() ? motion().off_ground == 0 && flight_progress(walk(), side) >= 1
                          : match().feet[side].planted == 1;
-    }
-    /// Heel and ball of a foot.
-    [[nodiscard]] std::array<Vec3, 2> sole(std::uint32_t side) {
-        const WalkLeg& leg = body().legs[side];
-        const Affine& ankle = world.get<const Pose>(person).joints[leg.foot];
-        const Affine& root = world.get<const WorldTransform>(person).world;
-        return {
-            transform_point(root, transform_point(ankle, leg.heel - leg.ankle)),
-            transform_point(root, transform_point(ankle, leg.ball - leg.ankle))};
     }
 };
 

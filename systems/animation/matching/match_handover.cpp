@@ -19,13 +19,12 @@
 namespace limn {
 namespace {
 
-constexpr float kFadeTime = 0.25f;     // of a handover [s]
-constexpr float kSamePlace = 0.004f;   // of feet that both poses have on the ground [m]
-constexpr float kWetFrom = 0.02f;      // of weights of a motor's pose, where it is needed;
-constexpr float kStillNeeded = 0.06f;  // it is until they are below this
-constexpr float kSinkNeeded = 0.05f;   // of the hips [leg lengths]
-constexpr float kStoopHeight = 0.75f;  // of hands, below which a back stoops [m]
-constexpr float kSettled = 0.06f;      // how long it has to stand after a fall [s]
+constexpr float kFadeTime = 0.25f;    // of a handover [s]
+constexpr float kSamePlace = 0.004f;  // of feet that both poses have on the ground [m]
+constexpr float kNeeded = 0.06f;      // weights of a motor's pose above which it is shown,
+constexpr float kNoLonger = 0.02f;    // and below which it is not any more
+constexpr float kSinkNeeded = 0.05f;  // of the hips [leg lengths]
+constexpr float kStoop = 0.8f;        // height of hands, below which a back stoops [hips]
 
 HandoverJoint& show(HandoverJoint& joint, const Quat& rotation, const Vec3& place) {
     joint.last_rotation = joint.rotation;
@@ -92,12 +91,13 @@ void show_as_it_is(
 
 }  // namespace
 
-bool is_more_than_walking(const MotorState& motor, const MotorPoseState& pose, bool away) {
-    const float least = away ? kWetFrom : kStillNeeded;
-    const bool stoops = std::min(pose.hands[0].y, pose.hands[1].y) < kStoopHeight;
+bool is_more_than_walking(
+    const MotorState& motor, const MotorPoseState& pose, const WalkBody& body, bool away) {
+    const float least = away ? kNoLonger : kNeeded;
+    const float hands = std::min(pose.hands[0].y, pose.hands[1].y);
     return motor.mode != MotorMode::Stand || motor.gather > 0 || pose.off_ground != 0
-           || (away && motor.air_time > 0) || pose.wade.value > least || pose.push.value > least
-           || pose.swim.value > least || (stoops && pose.hold.value > least)
+           || pose.wade.value > least || pose.push.value > least || pose.swim.value > least
+           || (pose.hold.value > least && hands < kStoop * body.hips_place.y)
            || std::abs(pose.sink.value) > kSinkNeeded;
 }
 
@@ -194,15 +194,11 @@ void step_handover(
         const WalkLeg& leg = body.legs[i];
         const JointPlace ankle = find_place(skeleton, pose, leg.foot);
         HandoverJoint& shown = handover.feet[i];
-        const HandoverJoint before = shown;
         ShownJoint now =
             step_joint(handover.stage, handover.clock, dt, {ankle.rotation, ankle.position}, shown);
         const bool begins = handover.stage == HandoverStage::Measure;
         if (begins && glm::distance(now.place, ankle.position) < kSamePlace) {
-            now.place = ankle.position;
-            shown.place = now.place;
-            // So that the offset has no velocity, either.
-            shown.last_place = before.place;
+            now.place = shown.place = ankle.position;
         }
         feet[i].place = now.place + now.rotation * ball_offset(skeleton, leg);
         feet[i].rotation = now.rotation;

@@ -18,8 +18,8 @@ namespace limn {
 // Techniques: char.blend, char.motion-select
 
 /// Whether a motor's pose is needed. `away`: whether it is shown now, which it is a little longer.
-[[nodiscard]] bool
-is_more_than_walking(const MotorState& motor, const MotorPoseState& pose, bool away);
+[[nodiscard]] bool is_more_than_walking(
+    const MotorState& motor, const MotorPoseState& pose, const WalkBody& body, bool away);
 
 /// Puts the feet of a walk where motion matching shows them, in the middle of a step or not.
 void leave_motion_match(

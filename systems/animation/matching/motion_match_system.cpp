@@ -82,7 +82,8 @@ void update_motion_matching(
                 *assets, assets->skeletons[skeleton.skeleton.index], *database, match, motor};
             const MoveIntent intent = wanted != nullptr ? *wanted : MoveIntent{};
             if (motor != nullptr && motor_pose != nullptr && shown != nullptr && walk != nullptr) {
-                const bool away = is_more_than_walking(*motor, *motor_pose, state.away != 0);
+                const bool away =
+                    is_more_than_walking(*motor, *motor_pose, database->body, state.away != 0);
                 if (away && state.away == 0) {
                     leave_motion_match(context, transform, step, state, *walk);
                 } else if (!away && state.away != 0) {

@@ -24,11 +24,13 @@ constexpr float kSlowRate = 6.0f;        // of weights in water and of throws [1
 constexpr float kTrailRate = 18.0f;      // at which feet follow a body off the ground [1/s]
 constexpr float kSwimTrailRate = 16.0f;  // likewise in water [1/s]
 constexpr float kSettleRate = 24.0f;     // of feet that have just landed [1/s]
-constexpr float kCrouch = 0.26f;         // before a jump [leg lengths]
+constexpr float kRunningCrouch = 0.35f;  // of the crouch before a jump, in a run
 constexpr float kCrouchRate = 30.0f;     // [1/s]
 constexpr float kStretchRate = 22.0f;    // of the hips after a take-off [1/s]
 constexpr float kFastAir = 4.0f;         // speed at which strides in the air are widest [m/s]
-constexpr float kFallFrom = 1.2f;        // upward speed at which legs stretch for the ground [m/s]
+constexpr float kLandTime = 0.36f;       // before a landing, when legs stretch for the ground [s]
+constexpr float kLandRate = 12.0f;       // at which they do [1/s]
+constexpr float kFallGravity = 9.81f;    // [m/s^2]
 constexpr float kWadeAt = 0.2f;          // depth relative to the height at which it wades
 constexpr float kWadeFull = 0.55f;       // depth at which it does so fully
 constexpr float kCruiseSpeed = 0.6f;     // at which it lies in the water [m/s]
@@ -119,9 +121,8 @@ FreeFoot jumping_foot(
     const float fast = std::clamp(speed / kFastAir, 0.0f, 1.0f);
     const bool leads = which == state.lead;
     const Vec3 side = 0.9f * leg.side * frame.left;
-    const float stride = leads ? 0.12f + 0.32f * fast : -0.02f - 0.42f * fast;
-    const float height = leads ? 0.4f * style.tuck + 0.6f * style.tuck * fast
-                               : 0.25f * style.tuck + 0.3f * style.tuck * fast;
+    const float stride = leads ? 0.06f + 0.38f * fast : -0.1f - 0.34f * fast;
+    const float height = style.tuck * (leads ? 0.75f + 0.25f * fast : 0.6f);
     const FreeFoot rising = {
         side + length * (stride * frame.forward + Vec3(0, height, 0)),
         leads ? -0.35f : -0.6f - 0.4f * fast};
@@ -241,14 +242,24 @@ void follow_root(
     walk.lean *= fade;
 }
 
-void step_weights(const MotorPoseInput& input, float step, MotorPoseState& state) {
+/// Until one that falls reaches the ground, without the resistance of the air [s].
+float time_to_land(const MotorState& motor) {
+    if (motor.above < 0) {
+        return INFINITY;
+    }
+    const float rise = motor.velocity.y;
+    return (rise + std::sqrt(rise * rise + 2 * kFallGravity * motor.above)) / kFallGravity;
+}
+
+void step_weights(
+    const MotorPose& style, const MotorPoseInput& input, float step, MotorPoseState& state) {
     const MotorState& motor = input.motor;
     const bool swims = motor.mode == MotorMode::Swim;
     const bool falls = motor.mode == MotorMode::Fall;
     const float speed = glm::length(flat_part(input.velocity));
     ease(falls ? 1.0f : 0.0f, kWeightRate, step, state.air);
-    const bool drops = falls && input.velocity.y < kFallFrom;
-    ease(drops ? 1.0f : 0.0f, falls ? 8.0f : 3.0f, step, state.fall);
+    const bool drops = falls && time_to_land(motor) < kLandTime;
+    ease(drops ? 1.0f : 0.0f, falls ? kLandRate : 3.0f, step, state.fall);
     ease(swims ? 1.0f : 0.0f, kSlowRate, step, state.swim);
     ease(swims ? smooth01(speed / kCruiseSpeed) : 0.0f, 3, step, state.cruise);
     const float deep = motor.depth / std::max(input.height, 1e-3f);
@@ -266,7 +277,9 @@ void step_weights(const MotorPoseInput& input, float step, MotorPoseState& state
     state.water = glm::mix(state.water, std::max(motor.depth, 0.0f), 1 - std::exp(-10 * step));
     const float rate = gathers ? kCrouchRate : state.off_ground != 0 ? kStretchRate : 0.0f;
     if (rate > 0) {
-        ease(gathers ? kCrouch : stand, rate, step, state.sink);
+        const float crouch =
+            style.crouch * glm::mix(1.0f, kRunningCrouch, std::min(speed / kFastAir, 1.0f));
+        ease(gathers ? crouch : stand, rate, step, state.sink);
     }
 }
 
@@ -391,7 +404,7 @@ void step_motor_pose(
     const float stroke = glm::mix(0.6f, 1.0f, state.cruise.value) * style.stroke;
     state.phase += step * stroke;
     state.phase -= std::floor(state.phase);
-    step_weights(input, step, state);
+    step_weights(style, input, step, state);
     step_hands(input, body, step, state);
     const float settle = std::exp(-kSettleRate * step);
     for (std::size_t i = 0; i < 2; ++i) {
