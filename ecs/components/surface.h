@@ -447,7 +447,8 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(
         detail_texture,
         "tangent-space normals, green up, of finer relief, added to normal_texture: give it a "
-        "scale to tile it");
+        "scale to tile it; the alpha of vertex colors scales its slopes, except with alpha_mode "
+        "mask");
     LIMN_FIELD(thickness_texture, "green = fraction of the thickness");
     LIMN_FIELD(transmission_texture, "red = factor of transmission");
     LIMN_FIELD(

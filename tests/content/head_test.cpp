@@ -130,11 +130,90 @@ TEST_CASE("head: a nostril opens downwards and ends 8 mm or more up, within the 
     REQUIRE(rim.size() >= 16);
     CHECK(facing(cavity).y < -0.8f);
     CHECK(mean_position(end).y - mean_position(rim).y > 0.8f);
+    Vec3 rim_low = Vec3(100);
+    Vec3 rim_high = Vec3(-100);
+    for (const std::uint32_t v : rim) {
+        rim_low = glm::min(rim_low, wrapped()[v]);
+        rim_high = glm::max(rim_high, wrapped()[v]);
+    }
+    CHECK(rim_high.x - rim_low.x > 0.55f);  // [cm]
+    CHECK(glm::length(rim_high - rim_low) > 1.0f);
+    for (const std::uint32_t v : end) {  // a hole: no light returns from it
+        const Vec3 color = head_skin_color(head_layout().vertices[v], wrapped()[v], HeadShape{});
+        CHECK(color.x < 0.05f);
+    }
     for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim + 2, kNostrilLoops)) {
         CHECK(head_distance(wrapped()[v], HeadShape{}, 1) < 0);
     }
     for (const std::uint32_t v : rim) {  // a column stays between the nostrils
         CHECK(wrapped()[v].x > 0.2f);
+    }
+}
+
+/// Vertices of a loop around the mouth, in the order of their angle.
+std::vector<std::uint32_t> mouth_loop(int loop) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t v = 0; v < wrapped().size(); ++v) {
+        const HeadVertex& vertex = head_layout().vertices[v];
+        if (vertex.loops == HeadLoops::Mouth && vertex.loop == loop) {
+            found.push_back(v);
+        }
+    }
+    std::ranges::sort(found, {}, [](std::uint32_t v) { return head_layout().vertices[v].angle; });
+    return found;
+}
+
+TEST_CASE("head: the red of the lips ends in an even line, 8 and 9 mm from where they touch") {
+    const auto border = mouth_loop(kLipBorderLoop);
+    const auto line = mouth_loop(kLipLoop);
+    REQUIRE(border.size() == line.size());
+    float upper = 0;
+    float lower = 0;
+    float uneven = 0;
+    for (std::size_t k = 0; k < border.size(); ++k) {
+        const Vec3 p = wrapped()[border[k]];
+        const Vec3 before = wrapped()[border[(k + border.size() - 1) % border.size()]];
+        const Vec3 after = wrapped()[border[(k + 1) % border.size()]];
+        const float height = p.y - wrapped()[line[k]].y;
+        upper = std::max(upper, height);
+        lower = std::max(lower, -height);
+        if (std::abs(p.x) < 2.2f) {  // it turns back at the corners
+            uneven = std::max(uneven, std::abs(0.5f * (before.y + after.y) - p.y));
+        }
+    }
+    CHECK(upper > 0.65f);  // Farkas 1994: 8.0 and 9.3, deviation 1.5 [cm]
+    CHECK(upper < 0.95f);
+    CHECK(lower > 0.78f);
+    CHECK(lower < 1.08f);
+    CHECK(uneven < 0.015f);  // [cm], viewed from the front; columns are 1.5 mm apart
+}
+
+TEST_CASE("head: skin at the corners of the mouth is without spikes and notches") {
+    // Beside a corner the loops of the lips come close together, but stay on the surface.
+    for (int loop = kLipBorderLoop - 1; loop < kLipLoop; ++loop) {
+        const auto ring = mouth_loop(loop);
+        const auto inner = mouth_loop(loop + 1);
+        const Vec3 corner = wrapped()[ring[0]];
+        CHECK(corner.x > wrapped()[inner[0]].x);
+        CHECK(corner.x - wrapped()[inner[0]].x < 0.15f);
+        CHECK(std::abs(head_distance(corner, HeadShape{}, 1)) < 0.05f);
+        CHECK(std::abs(corner.y - wrapped()[inner[0]].y) < 0.02f);
+    }
+}
+
+TEST_CASE("head: upper and lower lip do not intersect, at rest nor while AU25 parts them") {
+    for (int loop = kLipBorderLoop; loop <= kLipLoop; ++loop) {
+        const auto ring = mouth_loop(loop);
+        for (std::size_t k = 1; k < ring.size() / 2; ++k) {
+            const auto at = [&](std::size_t i, float weight) {
+                const std::uint32_t v = ring[i];
+                const HeadPoint point = skin_point(head_layout().vertices[v], wrapped()[v]);
+                return point.rest + weight * action_offset(action_unit("AU25"), point, HeadShape{});
+            };
+            for (const float weight : {0.0f, 0.5f, 1.0f}) {
+                CHECK(at(k, weight).y >= at(ring.size() - k, weight).y - 1e-4f);
+            }
+        }
     }
 }
 
@@ -258,6 +337,36 @@ TEST_CASE("head: a cornea has the radius and height of an eye's, and the iris li
     CHECK(apex - iris < 0.34f);
 }
 
+TEST_CASE("head: lashes grow from the edge of the lids") {
+    int roots = 0;
+    const HeadPart hair = make_face_hair(HeadShape{});
+    for (std::size_t v = 0; v < hair.points.size(); ++v) {
+        const HeadPoint& point = hair.points[v];
+        if (point.loops == HeadLoops::Eye && hair.mesh.uvs[v].y == 0) {
+            ++roots;
+            CHECK(point.loop == kLidLoop);
+            const Vec3 root = {std::abs(point.rest.x), point.rest.y, point.rest.z};
+            CHECK(glm::distance(root, lid_margin(point.angle)) < 0.05f);  // [cm]
+        }
+    }
+    CHECK(roots == 2 * 2 * (120 + 55));
+}
+
+TEST_CASE("head: the upper lid folds along a line 3 to 6 mm above its edge") {
+    int folded = 0;
+    for (const std::uint32_t v : left_loops(HeadLoops::Eye, kLidCreaseLoop, kLidCreaseLoop)) {
+        const HeadVertex& vertex = head_layout().vertices[v];
+        if (std::sin(vertex.angle) > 0.8f) {
+            ++folded;
+            const float above = wrapped()[v].y - lid_margin(vertex.angle).y;
+            CHECK(above > 0.3f);
+            CHECK(above < 0.6f);
+            CHECK(std::abs(wrapped()[v].y - lid_crease(wrapped()[v].x)) < 0.1f);
+        }
+    }
+    CHECK(folded > 8);
+}
+
 TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the skull, roots first") {
     CHECK(scalp_hair_cover({0, 14, 0}) == 1);
     CHECK(scalp_hair_cover({0, 7, 10}) == 0);  // forehead, cheek, neck
@@ -339,6 +448,30 @@ TEST_CASE("head: no number of a made mesh is NaN at the ends of all parameters")
         CHECK(std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite<3>));
         CHECK(std::all_of(mesh.normals.begin(), mesh.normals.end(), is_finite<3>));
         CHECK(mesh.regions.size() == 15);
+    }
+}
+
+TEST_CASE("head: pores are deepest on the nose, shallower on cheek and forehead, and not on lids") {
+    const auto relief = [](const Vec3& p) { return head_skin_relief(HeadVertex{}, p); };
+    const float nose = relief({0, 0.5f, 12});
+    const float cheek = relief({2.8f, 0.3f, 9.7f});
+    const float forehead = relief({0, 7.5f, 10.1f});
+    CHECK(nose == 1);
+    CHECK(cheek < 0.9f * nose);
+    CHECK(forehead < 0.9f * cheek);
+    CHECK(relief({6.8f, 4, 3}) < 0.7f * forehead);
+    const MeshData mesh = make_head({});
+    const auto [low, high] = std::ranges::minmax(mesh.colors, {}, &Vec4::w);
+    CHECK(low.w < 0.2f);
+    CHECK(high.w == 1);
+}
+
+TEST_CASE("head: no vertex of the upper lip has the position of one of the lower lip") {
+    const auto ring = mouth_loop(kLipLoop);
+    for (std::size_t k = 1; k < ring.size() / 2; ++k) {
+        const float gap = wrapped()[ring[k]].y - wrapped()[ring[ring.size() - k]].y;
+        CHECK(gap > 1e-4f);  // [cm]: normals are those of all that meets at a position
+        CHECK(gap < 1e-3f);
     }
 }
 

@@ -316,6 +316,12 @@ TEST_CASE("detail: its slopes add to those of the normal map" * technique("skin.
     scene.place(scene.add(make_square()), scene.add(material), at({0, 0, 0}));
     const Vec3 found = rgb_at(scene.aov(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17), "normal"), 8, 8);
     CHECK(glm::distance(found, glm::normalize(Vec3(0.25f, 1.0f / 3, 1))) < 0.01f);
+    // The alpha of vertex colors scales the slopes of the detail alone.
+    MeshData shallow = make_square();
+    shallow.colors.assign(shallow.positions.size(), Vec4(1, 1, 1, 0.5f));
+    scene.place(scene.add(shallow), scene.add(material), at({0, 0, 0.1f}));
+    const Vec3 half = rgb_at(scene.aov(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17), "normal"), 8, 8);
+    CHECK(glm::distance(half, glm::normalize(Vec3(0.25f, 0.5f / 3, 1))) < 0.01f);
 }
 
 }  // namespace limn::test::skin_models_test

@@ -84,7 +84,9 @@ HeadPart make_skin(const HeadShape& shape) {
             part.points.push_back(skin_point(vertex, positions[v]));
             part.mesh.positions.push_back(positions[v]);
             part.mesh.uvs.push_back(uv_at(chart));
-            part.mesh.colors.emplace_back(head_skin_color(vertex, positions[v], shape), 1.0f);
+            part.mesh.colors.emplace_back(
+                head_skin_color(vertex, positions[v], shape),
+                head_skin_relief(vertex, positions[v]));
         }
         return found->second;
     };
@@ -281,25 +283,59 @@ Vec3 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShap
     color = glm::mix(
         color, Vec3(0.83f, 0.76f, 0.78f), 0.6f * gaussian_spot(p, {2.6f, 2.0f, 9.2f}, 0.9f));
     if (vertex.loops == HeadLoops::Mouth) {
-        const float arch = std::sqrt(std::max(1 - square(p.x / 2.45f), 0.0f));
-        const float bow = 0.14f * gaussian_spot({p.x, 0, 0}, {0, 0, 0}, 0.3f);
-        const float edge = p.y > -3.3f ? 0.85f * arch - bow : arch;
-        const float lips = 1 - glm::smoothstep(edge - 0.14f, edge + 0.06f, std::abs(p.y + 3.3f));
-        color = glm::mix(color, Vec3(0.86f, 0.52f, 0.52f), lips);
-        if (vertex.loop > kLipLoop + 1) {
+        constexpr std::array<float, 3> kRed = {0.1f, 0.75f, 1};  // from beside the border inwards
+        const int inwards = vertex.loop - kLipBorderLoop + 1;
+        const float corner = glm::smoothstep(1.0f, 0.9f, std::abs(across_mouth(vertex.angle)));
+        const float red =
+            inwards < 0 ? 0 : kRed[std::min(inwards, 2)] * glm::mix(0.4f, 1.0f, corner);
+        color = glm::mix(color, Vec3(0.86f, 0.52f, 0.52f), red);
+        if (vertex.loop == kLipLoop) {  // little light arrives between the lips
+            color *= Vec3(0.66f, 0.58f, 0.58f);
+        } else if (vertex.loop > kLipLoop + 1) {
             color = Vec3(0.45f, 0.2f, 0.2f);
         }
     }
     if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
-        const float deep = static_cast<float>(vertex.loop - kNostrilRim) / 2;
-        color = glm::mix(color, Vec3(0.3f, 0.12f, 0.1f), std::min(deep, 1.0f));
+        constexpr std::array<Vec3, 3> kDark = {
+            Vec3(0.5f, 0.24f, 0.2f), Vec3(0.14f, 0.045f, 0.035f), Vec3(0.02f, 0.006f, 0.005f)};
+        color = kDark[std::min(vertex.loop - kNostrilRim - 1, 2)];
     }
     if (vertex.loops == HeadLoops::Eye) {
-        if (vertex.loop >= kLidLoop) {
-            color = Vec3(0.95f, 0.62f, 0.58f);
+        const bool upper = std::sin(vertex.angle) > 0;
+        if (vertex.loop > kLidLoop) {
+            color = Vec3(0.93f, 0.62f, 0.58f);
+        } else if (vertex.loop == kLidLoop) {  // among the roots of lashes
+            color *= upper ? Vec3(0.62f, 0.5f, 0.5f) : Vec3(0.9f, 0.76f, 0.74f);
         }
     }
     return color;
+}
+
+float head_skin_relief(const HeadVertex& vertex, const Vec3& point) {
+    struct Spot {
+        Vec3 center;
+        float radius, relief;
+    };
+    constexpr float kElsewhere = 0.3f;
+    constexpr std::array<Spot, 5> kSpots = {{
+        {{0, 0.6f, 12}, 2.0f, 1},           // nose
+        {{2.6f, 0.4f, 9.8f}, 2.0f, 0.8f},   // cheek beside it
+        {{0, -6.2f, 10.4f}, 1.9f, 0.7f},    // chin
+        {{0, 7.4f, 10.2f}, 3.6f, 0.6f},     // forehead
+        {{4.6f, -1.6f, 8.2f}, 2.4f, 0.5f},  // cheek below its bone
+    }};
+    if (vertex.loops == HeadLoops::Eye && vertex.loop >= kLidCreaseLoop - 2) {
+        return 0.15f;  // thin skin without pores
+    }
+    if (vertex.loops == HeadLoops::Mouth && vertex.loop >= kLipBorderLoop) {
+        return 0.45f;
+    }
+    const Vec3 p = {std::abs(point.x), point.y, point.z};
+    float relief = kElsewhere;
+    for (const Spot& spot : kSpots) {
+        relief += (spot.relief - kElsewhere) * gaussian_spot(p, spot.center, spot.radius);
+    }
+    return std::min(relief, 1.0f);
 }
 
 MeshData make_head(const HeadShape& requested) {

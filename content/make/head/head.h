@@ -20,7 +20,7 @@ namespace limn {
 // eyes are joints as well: "head", "jaw", "left_eye", "right_eye". Each part is a mesh with its
 // own material, and has the same morph targets:
 //
-//     skin      with regions that fold
+//     skin      with regions that fold; the alpha of its colors is how deep its pores are
 //     eyes      white, iris, pupil and caruncle, in vertex colors
 //     corneas   clear shells in front of them and tear lines, for a refractive material
 //     teeth     of both jaws

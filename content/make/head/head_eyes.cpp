@@ -61,7 +61,8 @@ Vec3 sclera_tint(float radius, float angle, float z) {
     const float corner = glm::smoothstep(0.75f, 1.2f, radius) * square(std::cos(angle));
     const float up = std::sin(angle) * radius;
     Vec3 color = glm::mix(Vec3(0.80f, 0.755f, 0.71f), Vec3(0.80f, 0.50f, 0.44f), 0.75f * corner);
-    color *= glm::mix(1.0f, 0.62f, glm::smoothstep(0.1f, 0.75f, up));  // shaded by the lid
+    color *= glm::mix(1.0f, 0.42f, glm::smoothstep(0.15f, 0.6f, up));  // shaded by the upper lid
+    color *= glm::mix(1.0f, 0.8f, glm::smoothstep(-0.3f, -0.6f, up));  // and by the lower one
     color = glm::mix(
         Vec3(0.12f, 0.11f, 0.10f), color,
         glm::smoothstep(kLimbus - 0.02f, kLimbus + 0.09f, radius));
@@ -179,7 +180,7 @@ HeadPart make_eye_balls() {
     std::vector<Ring> rings;
     const float plane = kApex - kIrisDepth;
     // A cone, which reflects no light to the front: a pupil is a hole.
-    constexpr float kSteep = 2.5f;
+    constexpr float kSteep = 6;
     constexpr float kRim = kPupil - 0.012f;
     for (const float radius : {0.001f, 0.5f * kRim, kRim}) {
         rings.push_back({radius, plane - 0.03f - kSteep * (kRim - radius)});

@@ -51,19 +51,22 @@ void add_lashes(HeadPart& part, Random& random, bool upper) {
         const Vec3 root = lid_margin(angle);
         const Vec3 beside = lid_margin(angle + 0.02f);
         const Vec3 out = glm::normalize(root - kEyeCenter);
-        const float fan = 0.55f * std::cos(turn) + 0.12f * (random.uniform() - 0.5f);
+        // Three by three they lean together, as wet lashes do.
+        const float lean = 0.16f * (1 - static_cast<float>(i % 3));
+        const float fan = 0.55f * std::cos(turn) + lean + 0.14f * (random.uniform() - 0.5f);
         const float arch = std::sin(turn);
         const float length = (upper ? 0.62f + 0.28f * arch : 0.34f + 0.16f * arch)
                              * (0.8f + 0.35f * random.uniform());
         const float curl = upper ? 1.0f : -0.8f;
         Strand strand;
         strand.root = root - 0.02f * out;
-        const Vec3 forward = glm::normalize(out + Vec3(fan, -0.12f * curl, 0.35f));
-        const Vec3 up = glm::normalize(out + Vec3(1.5f * fan, 0.95f * curl, 0.25f));
+        const float rise = 0.85f + 0.4f * random.uniform();
+        const Vec3 forward = glm::normalize(0.6f * out + Vec3(0.8f * fan, -0.3f * curl, 0.7f));
+        const Vec3 up = glm::normalize(0.5f * out + Vec3(1.4f * fan, rise * curl, 0.3f));
         strand.control = strand.root + 0.55f * length * forward;
         strand.tip = strand.control + 0.6f * length * up;
         strand.across = glm::normalize(beside - root);
-        strand.width = upper ? 0.015f : 0.010f;
+        strand.width = upper ? 0.016f : 0.009f;
         strand.point.loops = HeadLoops::Eye;
         strand.point.loop = kLidLoop;
         strand.point.angle = angle;

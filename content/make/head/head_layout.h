@@ -39,8 +39,10 @@ struct HeadLayout {
 /// Number of loops of each kind, and the one at the edge of the opening.
 inline constexpr int kEyeLoops = 14;
 inline constexpr int kLidLoop = 9;  ///< outer edge of the lids' margin; the next is the inner edge
+inline constexpr int kLidCreaseLoop = 6;  ///< where the upper lid folds
 inline constexpr int kMouthLoops = 17;
-inline constexpr int kLipLoop = 11;  ///< where the lips touch
+inline constexpr int kLipLoop = 11;       ///< where the lips touch
+inline constexpr int kLipBorderLoop = 7;  ///< where the red of the lips ends
 inline constexpr int kNostrilLoops = 10;
 inline constexpr int kNostrilRim = 5;  ///< further loops line the cavity
 inline constexpr int kEarLoops = 28;

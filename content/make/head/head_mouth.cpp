@@ -96,14 +96,14 @@ void append_tooth(HeadPart& part, const Jaw& jaw, const Tooth& tooth, float alon
     for (std::uint32_t row = 0; row < kRows; ++row) {
         const float polar = kPi * static_cast<float>(row) / (kRows - 1);
         const float down = rounded(std::cos(polar), 0.55f);
-        const float ring = std::max(rounded(std::sin(polar), 0.4f), 0.01f);
+        const float ring = std::max(rounded(std::sin(polar), 0.25f), 0.01f);
         const float root = 0.5f + 0.5f * down;
         for (std::uint32_t i = 0; i < kAround; ++i) {
             const float angle = 2 * kPi * static_cast<float>(i) / kAround;
-            const float across =
-                0.49f * tooth.width * ring * rounded(std::cos(angle), 0.55f) * (1 - 0.22f * root);
-            const float through =
-                0.5f * tooth.depth * ring * rounded(std::sin(angle), 0.7f) * (0.55f + 0.45f * root);
+            const float across = 0.502f * tooth.width * ring * rounded(std::cos(angle), 0.4f)
+                                 * (1 - 0.16f * square(root));
+            const float through = 0.5f * tooth.depth * ring * rounded(std::sin(angle), 0.45f)
+                                  * (0.55f + 0.45f * root);
             Vec3 p = center + across * ahead + through * out;
             p.y = jaw.edge + jaw.side * tooth.height * root;
             p.x *= side;
@@ -116,22 +116,46 @@ void append_tooth(HeadPart& part, const Jaw& jaw, const Tooth& tooth, float alon
     append_grid(part.mesh, kRows, kAround, true, side * jaw.side < 0);
 }
 
+/// How much higher the gum is at this arc length from the midline than at the middle of a tooth:
+/// between two teeth it fills the gap.
+float papilla(const Jaw& jaw, float length) {
+    constexpr float kRise = 0.2f;  // [cm]
+    float from = 0;
+    for (const Tooth& tooth : jaw.teeth) {
+        if (length < from + tooth.width) {
+            return kRise * square(square(2 * (length - from) / tooth.width - 1));
+        }
+        from += tooth.width;
+    }
+    return 0;
+}
+
 /// A ridge along the roots of the teeth, with a bulge at each.
 void append_gum(HeadPart& part, const Jaw& jaw) {
-    constexpr std::uint32_t kColumns = 97;
+    constexpr std::uint32_t kColumns = 121;
     constexpr std::uint32_t kRows = 9;
+    std::array<float, kColumns> rise{};
+    for (std::uint32_t i = 0; i < kColumns; ++i) {
+        const float turn = 1.42f * std::abs(2 * static_cast<float>(i) / (kColumns - 1) - 1);
+        float length = 0;
+        for (int step = 0; step < 64; ++step) {
+            length += glm::distance(
+                arch_point(jaw, turn * static_cast<float>(step) / 64, 0),
+                arch_point(jaw, turn * static_cast<float>(step + 1) / 64, 0));
+        }
+        rise[i] = papilla(jaw, length);
+    }
     for (std::uint32_t row = 0; row < kRows; ++row) {
         // From the root outside over the edge of the gum to the inside.
         const float around = kPi * static_cast<float>(row) / (kRows - 1);
         for (std::uint32_t i = 0; i < kColumns; ++i) {
             const float along = 2 * static_cast<float>(i) / (kColumns - 1) - 1;
-            const float scallop = 0.05f * std::cos(along * 7 * 2 * kPi);
             const float thick = 0.36f - 0.02f * std::abs(along);
             Vec3 p = arch_point(jaw, 1.42f * along, 0.33f - thick * std::cos(around));
             p.y = jaw.edge
                   + jaw.side
                         * (1.45f
-                           - (0.62f + scallop) * std::pow(std::max(std::sin(around), 0.0f), 0.6f)
+                           - (0.56f + rise[i]) * std::pow(std::max(std::sin(around), 0.0f), 0.6f)
                            - 0.1f * std::abs(along));
             append(part, bone_point(p, jaw.bound), kGum, {along, around});
         }

@@ -19,6 +19,10 @@ struct HeadPart {
 [[nodiscard]] Vec3
 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape);
 
+/// How deep pores are there, 1 on the nose, where they are deepest: the alpha of the skin's colors,
+/// which scales the material's detail_texture.
+[[nodiscard]] float head_skin_relief(const HeadVertex& vertex, const Vec3& point);
+
 /// Both eyeballs, of radius kBallRadius, with an iris as deep behind the cornea as in a real eye,
 /// and a pupil of 3 mm; and the caruncles in the inner corners of the eyes.
 [[nodiscard]] HeadPart make_eye_balls();

@@ -60,6 +60,7 @@ Vec3 hair_flow(const Vec3& p, const Vec3& out) {
 struct Card {
     Vec3 root, out, flow;  ///< out and flow: unit
     float length, width;   ///< [cm]
+    float taper;           ///< fraction of the width that is lost to the tip
     float lift;            ///< of its tip from the scalp [cm]
     float strand;          ///< u of the image at its center line
     float shade;
@@ -86,6 +87,7 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
     Vec3 out = card.out;
     for (std::uint32_t row = 0; row < kRows; ++row) {
         const float t = static_cast<float>(row) / (kRows - 1);
+        const float narrow = 1 - card.taper * t * t;
         if (row > 0) {
             const Vec3 flow = normalize_or(card.flow - glm::dot(card.flow, out) * out, card.flow);
             const Vec3 lie = hair_flow(at, out);
@@ -97,11 +99,12 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
         }
         const Vec3 across = normalize_or(glm::cross(card.flow, out), Vec3(1, 0, 0));
         for (const float edge : {-1.0f, 1.0f}) {
-            const Vec3 p = at + 0.5f * card.width * (1 - 0.3f * t) * edge * across;
+            const Vec3 p = at + 0.5f * card.width * narrow * edge * across;
             part.points.push_back(bone_point(p, 0));
             part.mesh.positions.push_back(p);
             part.mesh.normals.push_back(glm::normalize(out + 0.2f * edge * across));
-            part.mesh.uvs.emplace_back(card.strand + 0.5f * edge * card.width / kImageWidth, t);
+            part.mesh.uvs.emplace_back(
+                card.strand + 0.5f * edge * card.width * narrow / kImageWidth, t);
             part.mesh.colors.emplace_back(
                 Vec3(card.shade * glm::mix(card.root_shade, 1.0f, t)), 1.0f);
         }
@@ -122,6 +125,7 @@ void append_undercoat(HeadPart& part, const HeadShape& shape) {
         card.flow = hair_flow(card.root, card.out);
         card.length = 2.4f;
         card.width = 2.0f;
+        card.taper = 0.3f;
         card.lift = 0.06f;
         card.strand = 0.37f * static_cast<float>(i);
         card.shade = 0.75f;
@@ -149,9 +153,12 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         const float grown = random.uniform();
         const std::array<float, 4> chance = {
             random.uniform(), random.uniform(), random.uniform(), random.uniform()};
-        if (scalp_hair_cover(root) < 0.25f + 0.6f * grown) {
+        const float cover = scalp_hair_cover(root);
+        if (cover < 0.12f + 0.5f * grown) {
             continue;
         }
+        const float edge =
+            1 - glm::smoothstep(0.6f, 1.0f, cover);  // finer and shorter at the hairline
         Card card;
         card.root = root;
         card.out = glm::normalize(head_gradient(root, shape, 0));
@@ -160,7 +167,9 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         card.flow = glm::normalize(flow + 0.4f * (chance[0] - 0.5f) * aside);
         const float top = glm::smoothstep(3.0f, 11.0f, root.y);
         card.length = glm::mix(2.1f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
-        card.width = glm::mix(0.5f, 0.65f, top) * (0.7f + 0.6f * chance[1]);
+        card.length *= glm::mix(1.0f, 0.4f + 0.4f * chance[0], edge);
+        card.width = glm::mix(0.5f, 0.65f, top) * (0.7f + 0.6f * chance[1]) * (1 - 0.7f * edge);
+        card.taper = 0.8f;
         card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
         card.strand = 7.31f * chance[3] + 3.17f * chance[0];
         card.shade = 0.9f + 0.2f * chance[3];

@@ -52,6 +52,10 @@ constexpr std::array<Solid, 7> kFeatures = {{
     {{0, -6.25f, 9.31f}, {0.65f, -6.15f, 8.9f}, {1.11f, 1.04f, 1.21f}, {0.98f, 0.96f, 0.98f}, 1.2f},
 }};
 
+/// The fold of the upper lid, as a quadratic Bezier curve.
+constexpr std::array<Vec3, 3> kLidCrease = {
+    {{1.85f, 3.9f, 9.1f}, {3.05f, 5.1f, 9.6f}, {4.65f, 3.85f, 8.5f}}};
+
 constexpr std::array<Stroke, 32> kSurfaceStrokes = {{
     // Brow ridge, glabella, temple, frontal eminence.
     {{1.07f, 5.26f, 9.77f}, {3.49f, 5.9f, 9.85f}, {5.46f, 4.62f, 8.08f}, 1.11f, 0.48f, 0.12f},
@@ -104,7 +108,7 @@ constexpr std::array<Stroke, 32> kSurfaceStrokes = {{
      0.02f,
      0.2f},
     // Fold of the upper lid; the flesh above it.
-    {{1.85f, 3.9f, 9.1f}, {3.05f, 5.1f, 9.6f}, {4.65f, 3.85f, 8.5f}, 0.13f, -0.13f},
+    {kLidCrease[0], kLidCrease[1], kLidCrease[2], 0.15f, -0.15f},
     {{2.29f, 4.52f, 9.5f},
      {3.41f, 4.83f, 9.39f},
      {4.76f, 4.53f, 8.55f},
@@ -320,12 +324,23 @@ Vec3 lid_margin(float angle) {
     return kEyeCenter + Vec3(x, y, std::max(depth, 0.45f) + inner);
 }
 
+float lid_crease(float x) {
+    const Vec3& a = kLidCrease[0];
+    const Vec3& b = kLidCrease[1];
+    const Vec3& c = kLidCrease[2];
+    const float bend = a.x - 2 * b.x + c.x;
+    const float half = b.x - a.x;
+    const float root = std::sqrt(std::max(square(half) - bend * (a.x - x), 0.0f));
+    const float t = glm::clamp((root - half) / bend, 0.0f, 1.0f);
+    return glm::mix(glm::mix(a.y, b.y, t), glm::mix(b.y, c.y, t), t);
+}
+
 Vec3 nostril_rim(float angle) {
     // An oval that points to the tip, wider at the back; its outer side is higher.
     const float c = std::cos(angle);
     const float s = std::sin(angle);
     const float width = 1 - 0.22f * s;
-    return Vec3(0.70f, -0.6f, 11.95f) + width * c * Vec3(0.34f, 0.05f, -0.12f)
+    return Vec3(0.73f, -0.6f, 11.95f) + width * c * Vec3(0.38f, 0.09f, -0.12f)
            + s * Vec3(-0.2f, 0.08f, 0.48f);
 }
 
@@ -336,8 +351,25 @@ float across_mouth(float angle) {
 Vec3 lip_line(float angle) {
     const float c = across_mouth(angle);
     const float bow = 0.07f * std::cos(3 * kPi * c * 0.5f) * (1 - c * c);  // dips at the center
-    const float y = -3.32f - 0.16f * square(c) * square(c) - bow;
+    // The lips touch, but no vertex of one has the position, and so the normal, of one of the
+    // other.
+    constexpr float kApart = 2e-4f;  // [cm]
+    const float apart = std::sin(angle) < -1e-3f ? kApart : 0.0f;
+    const float y = -3.32f - 0.16f * square(c) * square(c) - bow - apart;
     return {2.5f * c, y, 11.1f - 0.95f * std::pow(std::abs(c), 2.2f)};
+}
+
+float lip_height(float angle) {
+    const float c = across_mouth(angle);
+    if (std::sin(angle) < 0) {
+        return 0.95f * std::pow(1 - square(c), 0.85f);
+    }
+    constexpr float kRound = 0.06f;
+    const float off = std::max(std::sqrt(square(c) + square(kRound)) - kRound, 0.0f);
+    const float bow = 0.19f * std::exp(-square(c / 0.16f));  // between the peaks
+    return 0.92f
+               * std::pow(std::max(1 - off / (std::sqrt(1 + square(kRound)) - kRound), 0.0f), 0.72f)
+           - bow;
 }
 
 }  // namespace limn

@@ -38,6 +38,9 @@ void project_forwards(std::span<Vec3> points, const HeadShape& shape, float deta
 /// Outer edge of the margin of the left lids at `angle` [rad], 0 lateral, pi / 2 up.
 [[nodiscard]] Vec3 lid_margin(float angle);
 
+/// Height of the fold of the left upper lid at `x` [cm].
+[[nodiscard]] float lid_crease(float x);
+
 /// Rim of the left nostril at `angle`, 0 lateral, pi / 2 towards the tip of the nose; near the
 /// surface.
 [[nodiscard]] Vec3 nostril_rim(float angle);
@@ -48,5 +51,8 @@ void project_forwards(std::span<Vec3> points, const HeadShape& shape, float deta
 
 /// Where the lips touch, at `angle` around the mouth.
 [[nodiscard]] Vec3 lip_line(float angle);
+
+/// Height of the red of the upper or the lower lip at `angle`, up to its border [cm].
+[[nodiscard]] float lip_height(float angle);
 
 }  // namespace limn

@@ -66,6 +66,30 @@ Vec3 project(
                            : project_to_head(p, shape, detail, steps);
 }
 
+/// Between the border of the lips, or a little beyond it, and where they touch: the red of the lips
+/// rolls in there, and tapers to the corners of the mouth.
+Vec3 lip_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
+    constexpr float kBeyond = 0.13f;    // from the border to the loop outside of it [cm]
+    constexpr float kThinning = 0.25f;  // with age
+    constexpr std::array<float, 2> kRoll = {0.1f, 0.02f};  // depth where they touch, beside it [cm]
+    const int outwards = kLipLoop - vertex.loop;
+    const Vec3 line = lip_line(vertex.angle);
+    const float side = std::copysign(1.0f, std::sin(vertex.angle));
+    const float height =
+        lip_height(vertex.angle) * (1 - kThinning * std::max(shape.age - 0.3f, 0.0f));
+    constexpr int kRed = kLipLoop - kLipBorderLoop;
+    const float red = std::min(static_cast<float>(outwards) / kRed, 1.0f);
+    const float beyond = outwards > kRed ? kBeyond : 0.0f;
+    const Vec3 at = {
+        line.x * (1 + 0.012f * static_cast<float>(outwards) + 0.3f * beyond),
+        line.y + side * (height * red + beyond * glm::smoothstep(0.0f, 0.3f, height)), 0};
+    const float roll = outwards < 2 ? kRoll[outwards] : 0.0f;
+    return {
+        at.x, at.y,
+        project_forwards(at, shape, detail).z
+            - roll * glm::mix(0.3f, 1.0f, glm::smoothstep(0.0f, 0.3f, height))};
+}
+
 /// From where the lips touch to the back of the mouth.
 Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail) {
     struct Profile {
@@ -83,6 +107,9 @@ Vec3 mouth_point(const HeadVertex& vertex, const HeadShape& shape, float detail)
     }};
     const Profile& profile = kProfile[vertex.loop - kLipLoop];
     const Vec3 line = lip_line(vertex.angle);
+    if (vertex.loop == kLipLoop) {
+        return lip_point(vertex, shape, detail);
+    }
     return {
         line.x * profile.width, line.y + profile.open * std::sin(vertex.angle),
         project_forwards({line.x, line.y, 0}, shape, detail).z - profile.depth};
@@ -96,10 +123,10 @@ Vec3 nostril_point(const HeadVertex& vertex, const HeadShape& shape, float detai
     };
     constexpr std::array<Profile, kNostrilLoops - kNostrilRim + 1> kProfile = {{
         {0, 1},
-        {0.06f, 0.88f},
-        {0.2f, 0.76f},
-        {0.45f, 0.84f},
-        {0.8f, 0.78f},
+        {0.07f, 0.88f},
+        {0.2f, 0.72f},
+        {0.45f, 0.74f},
+        {0.8f, 0.72f},
         {1.15f, 0.35f},
     }};
     const Vec3 inwards = glm::normalize(Vec3(-0.2f, 0.9f, -0.05f));
@@ -177,6 +204,9 @@ class HeadWrap {
             } else if (vertex.loops == HeadLoops::Mouth && vertex.loop >= kLipLoop) {
                 positions_[v] = mouth_point(vertex, shape_, detail);
                 free_[v] = false;
+            } else if (vertex.loops == HeadLoops::Mouth && vertex.loop >= kLipBorderLoop - 1) {
+                positions_[v] = lip_point(vertex, shape_, detail);
+                free_[v] = false;
             } else if (vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim) {
                 positions_[v] = to_side(vertex, nostril_point(vertex, shape_, detail));
                 free_[v] = false;
@@ -209,7 +239,8 @@ class HeadWrap {
                 if (!free_[v]) {
                     continue;
                 }
-                const Vec3 moved = glm::mix(before[v], mean_around(before, v), 0.35f);
+                const Vec3 moved =
+                    to_lid(layout_.vertices[v], glm::mix(before[v], mean_around(before, v), 0.35f));
                 if (on_nose(layout_.vertices[v])) {
                     nose.push_back(v);
                     on_nose_points.push_back(moved);
@@ -222,6 +253,24 @@ class HeadWrap {
                 positions_[nose[i]] = on_nose_points[i];
             }
         });
+    }
+
+    /// Moves `p` of a loop of the upper lid towards its height between the lid's edge and its fold,
+    /// or beside that, so that a loop lies in the fold; not at the corners, where loops meet.
+    static Vec3 to_lid(const HeadVertex& vertex, Vec3 p) {
+        constexpr float kAbove = 0.2f;  // from the fold to the next loop [cm]
+        if (vertex.loops != HeadLoops::Eye || vertex.loop >= kLidLoop
+            || vertex.loop < kLidCreaseLoop - 1) {
+            return p;
+        }
+        const Vec3 margin = lid_margin(vertex.angle);
+        const float up = static_cast<float>(kLidLoop - vertex.loop) / (kLidLoop - kLidCreaseLoop);
+        const float crease = lid_crease(margin.x);
+        const float height = up > 1 ? crease + kAbove : glm::mix(margin.y, crease, up);
+        const float share = glm::smoothstep(0.4f, 0.75f, std::sin(vertex.angle));
+        p.y = glm::mix(p.y, height, share);
+        p.x = glm::mix(p.x, std::copysign(margin.x, p.x), share);
+        return p;
     }
 
     /// Smooths the mesh where it is folded, where its normal differs from that of the surface.

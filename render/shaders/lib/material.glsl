@@ -143,7 +143,11 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 #endif
 #ifdef DETAIL_MAP
     vec3 detail = tangent_normal(MAP_TEXEL(DETAIL_MAP, kDetailSlot).xyz);
-    n_ts.xy += n_ts.z * detail.xy / max(detail.z, 0.1);  // slopes of both heights add up
+    vec2 detail_slopes = detail.xy / max(detail.z, 0.1);
+#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK)
+    detail_slopes *= clamp(vertex_color.a, 0.0, 1.0);
+#endif
+    n_ts.xy += n_ts.z * detail_slopes;  // slopes of both heights add up
 #endif
     smooth_normal = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
     hook_normal(n_ts);
