@@ -18,7 +18,7 @@ struct LightingMethod {
     ShadingRate shading = ShadingRate::Pixel;  ///< other rates only with LightMethod::ObjectMajor
     std::optional<ShadingRate> compared;  ///< lit a second time, ObjectMajor (ComparedRadiance)
     HighlightLayout highlights = HighlightLayout::Sphere;
-    bool worst_blinn_axis = false;        ///< that of HighlightBlock::blinn_axis otherwise
+    bool worst_blinn_axis = false;  ///< that of HighlightBlock::blinn_axis otherwise
     bool blinn_diffuse = false;
     bool screen_interpolation = false;  ///< of the varyings of forward shaders
     HardwareDefects hardware = {};
