@@ -25,6 +25,7 @@ enum class WaterReflection : std::uint8_t {
     ScreenSpace,  ///< screen space, with the environment as fallback
     Environment,  ///< the environment only
     Planar,       ///< the scene rendered again by a camera mirrored at the rest surface
+    Map,          ///< after the book: reflection_map on a plane above, lit by downwelling light
 };
 
 /// Source of refraction, seen from above.
@@ -43,6 +44,9 @@ struct WaterLook {
     float map_scale = 0.5f;
     ImageId floor_map{};  ///< for Floor, where depth > 0; all waters share one
     float floor_tile = 2;
+    ImageId reflection_map{};  ///< for Map; all waters share one
+    float reflection_tile = 50;
+    float reflection_height = 20;
     float foam_below = -1;
     float foam_decay = 1.5f;
 };
@@ -52,8 +56,11 @@ LIMN_FIELDS(WaterLook) {
         fresnel, .doc = "Fresnel reflectance: exact, or an approximation",
         .values = "exact schlick angle");
     LIMN_FIELD(
-        reflection, .doc = "source of reflections: screen space, environment, or a mirrored camera",
-        .values = "screen_space environment planar", .renamed = "picture=screen_space");
+        reflection,
+        .doc =
+            "source of reflections: screen space, environment, a mirrored camera, or an authored "
+            "map of what is above",
+        .values = "screen_space environment planar map", .renamed = "picture=screen_space");
     LIMN_FIELD(
         refraction, .doc = "source of refraction: screen-space rays, offset image, or floor map",
         .values = "traced shifted floor");
@@ -62,6 +69,9 @@ LIMN_FIELDS(WaterLook) {
         map_scale, "resolution of planar as a fraction of the frame's, per side", "", 0.1, 1);
     LIMN_FIELD(floor_map, "color map of the bottom");
     LIMN_FIELD(floor_tile, "side length of a tile of the floor map", "m", 0.01, 1e4);
+    LIMN_FIELD(reflection_map, "color map of what water reflects, on a level plane above it");
+    LIMN_FIELD(reflection_tile, "side length of a tile of the reflection map", "m", 0.01, 1e5);
+    LIMN_FIELD(reflection_height, "of its plane above the water", "m", 0.01, 1e5);
     LIMN_FIELD(
         foam_below,
         "whitecaps where the Jacobian of the displacement by closed-form waves is below this; -1: "

@@ -115,6 +115,9 @@ void main() {
 #else
     vec3 mirror = hit.color;
 #endif
+#ifdef REFLECTION_MAP
+    mirror = reflection_of(water) == kMapReflection ? authored_reflection(water, position, away, falling) : mirror;
+#endif
 #ifdef PLANAR
     if (reflection_of(water) == kPlanarReflection) {
         mirror = planar_reflection(water, position, away, roughness * roughness);

@@ -225,12 +225,17 @@ void move_flat_back(WaterList& list) {
 }
 
 /// The look that is actually available: without the planar reflection a body falls back to
-/// screen-space reflections, without a floor map to traced refraction.
+/// screen-space reflections, without a reflection map to those of the environment, without a floor
+/// map to traced refraction.
 WaterLook available_look(const Water& water, const WaterLook* look, bool planar) {
     WaterLook available = look != nullptr ? *look : WaterLook{};
     const bool floor = available.floor_map.index != kNoAsset && water.depth > 0;
     if (available.refraction == WaterRefraction::Floor && !floor) {
         available.refraction = WaterRefraction::Traced;
+    }
+    if (available.reflection == WaterReflection::Map
+        && available.reflection_map.index == kNoAsset) {
+        available.reflection = WaterReflection::Environment;
     }
     if (available.reflection == WaterReflection::Planar && !planar) {
         available.reflection = WaterReflection::ScreenSpace;
@@ -285,7 +290,7 @@ void build_water_list(
     list.heights.clear();
     list.details.clear();
     list.looks = list.crests = list.planar = list.traced = list.bent = false;
-    list.floor = nullptr;
+    list.floor = list.ceiling = nullptr;
     for (std::size_t i = 0; i < sources.bodies.size(); ++i) {
         const WaterSources::Body& body = sources.bodies[i];
         list.entities.push_back(body.entity);
@@ -293,6 +298,10 @@ void build_water_list(
         if (list.floor == nullptr && body.look != nullptr
             && body.look->floor_map.index != kNoAsset) {
             list.floor = body.look;
+        }
+        if (list.ceiling == nullptr && body.look != nullptr
+            && body.look->reflection_map.index != kNoAsset) {
+            list.ceiling = body.look;
         }
         const WaterLook look = available_look(*body.water, body.look, body.entity == planar);
         add_body(sources, i, look, seas.layers()[i].margin, view, list);

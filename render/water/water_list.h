@@ -64,12 +64,13 @@ struct WaterList {
     std::vector<const Caustics*> caustics;  ///< per body, or null
     std::vector<Vec2> heights;              ///< per body: minimum and maximum wave height [m]
     WaterDetails details;
-    bool crests = false;               ///< some body has whitecaps (WaterLook::foam_below)
-    bool looks = false;                ///< some body has a non-default WaterLook
-    bool planar = false;               ///< some body has the planar reflection
-    bool traced = false;               ///< some body has screen-space reflections
-    bool bent = false;                 ///< some body traces refracted rays in screen space
-    const WaterLook* floor = nullptr;  ///< the first with a floor map
+    bool crests = false;                 ///< some body has whitecaps (WaterLook::foam_below)
+    bool looks = false;                  ///< some body has a non-default WaterLook
+    bool planar = false;                 ///< some body has the planar reflection
+    bool traced = false;                 ///< some body has screen-space reflections
+    bool bent = false;                   ///< some body traces refracted rays in screen space
+    const WaterLook* floor = nullptr;    ///< the first with a floor map
+    const WaterLook* ceiling = nullptr;  ///< the first with a reflection map
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };

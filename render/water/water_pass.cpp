@@ -83,6 +83,11 @@ const gpu::Texture* floor_map(const FrameData& frame, const WaterSurfaces& water
     return look != nullptr ? frame.materials->images().find_texture(look->floor_map) : nullptr;
 }
 
+const gpu::Texture* reflection_map(const FrameData& frame, const WaterSurfaces& waters) {
+    const WaterLook* look = waters.list.ceiling;
+    return look != nullptr ? frame.materials->images().find_texture(look->reflection_map) : nullptr;
+}
+
 /// What the surfaces of all waters of the view need.
 Variant surface_variant(const ViewData& view, const WaterSurfaces& waters) {
     Variant variant;
@@ -106,6 +111,7 @@ Variant light_variant(const ViewData& view, const WaterSurfaces& waters) {
     variant.add_if(list.details.needed, "DETAIL");
     variant.add_if(detail_map(*view.frame, waters) != nullptr, "DETAIL_MAP");
     variant.add_if(floor_map(*view.frame, waters) != nullptr, "FLOOR_MAP");
+    variant.add_if(reflection_map(*view.frame, waters) != nullptr, "REFLECTION_MAP");
     variant.add_if(!list.bent, "NO_TRACED_REFRACTION");
     return variant;
 }
@@ -322,7 +328,8 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     if (waters->list.details.needed && wave_tiles) {
         reads.emplace_back(graph.import("wave tiles", wave_tiles));
     }
-    for (const gpu::Texture* map : {detail_map(frame, *waters), floor_map(frame, *waters)}) {
+    for (const gpu::Texture* map :
+         {detail_map(frame, *waters), floor_map(frame, *waters), reflection_map(frame, *waters)}) {
         if (map != nullptr) {
             reads.emplace_back(graph.import("water map", *map));
         }
@@ -351,6 +358,12 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
             if (const gpu::Texture* floor = floor_map(*view.frame, *waters)) {
                 device.bind_texture(layout::kFloorMapUnit, *floor, &repeat);
                 program->set("floor_tile", waters->list.floor->floor_tile);
+            }
+            if (const gpu::Texture* above = reflection_map(*view.frame, *waters)) {
+                const WaterLook& look = *waters->list.ceiling;
+                device.bind_texture(layout::kReflectionImageUnit, *above, &repeat);
+                program->set(
+                    "reflection_plane", Vec2(look.reflection_height, look.reflection_tile));
             }
             device.draw_fullscreen();
         });

@@ -341,6 +341,51 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    Look, "water reflection: an authored map is sampled where mirrored rays meet its plane"
+              * technique("water.reflection-refraction-maps")) {
+    constexpr float kTile = 32;
+    constexpr float kHeight = 5;
+    world.resource<Environment>() = {
+        .sky = SkyKind::Uniform, .zenith = Vec3(1), .horizon = Vec3(1), .ground = Vec3(1)};
+    ImageData map;
+    map.name = "positions";
+    map.width = map.height = 64;
+    map.format = PixelFormat::Rgba32F;
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const Vec4 color(
+                (static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64, 0, 1);
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(&color);
+            map.pixels.insert(map.pixels.end(), bytes, bytes + sizeof(color));
+        }
+    }
+    const WaterLook look_of_map = {
+        .reflection = WaterReflection::Map,
+        .reflection_map = add(std::move(map)),
+        .reflection_tile = kTile,
+        .reflection_height = kHeight};
+    // One copy of the map is at x and z = -16 .. 16.
+    const Entity pond = world.create(kMirror, WorldTransform{at({-16, 0, -16})});
+    const RenderView view = look({0, 2, 4}, {0, 0, 0}, 64, 64);
+    world.add(pond, WaterLook{look_of_map});
+    const gpu::FloatImage image = radiance(view);
+    for (const IVec2& pixel : {IVec2(32, 40), IVec2(20, 36), IVec2(50, 50), IVec2(10, 60)}) {
+        CAPTURE(pixel.x);
+        const Vec3 ray = ray_through(view, pixel.x, pixel.y);
+        const Vec3 position = Vec3(0, 2, 4) - 2 / ray.y * ray;
+        const Vec3 met = position + kHeight / -ray.y * Vec3(ray.x, -ray.y, ray.z);
+        const float reflectance = fresnel(-ray.y, kMirror.refractive_index);
+        const Vec3 color = rgb_at(image, pixel.x, pixel.y) / reflectance;
+        CHECK(color.x * kTile - 16 == test::near(met.x).epsilon(0.02).scale(8));
+        CHECK(color.y * kTile - 16 == test::near(met.z).epsilon(0.02).scale(8));
+    }
+    world.add(pond, WaterLook{.reflection = WaterReflection::Map});  // without a map
+    const gpu::FloatImage without = radiance(view);
+    world.add(pond, WaterLook{.reflection = WaterReflection::Environment});
+    CHECK(radiance(view).pixels == without.pixels);
+}
+
+TEST_CASE_FIXTURE(
     Look, "water refraction: a floor map is sampled where refracted rays hit it"
               * technique("water.refraction-map")) {
     constexpr float kTile = 16;

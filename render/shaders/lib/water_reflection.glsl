@@ -2,6 +2,7 @@
 // lib/optics.glsl and lib/water_surface.glsl. Definitions:
 //   LOOKS     some body of water is not rendered by default
 //   PLANAR    some has a planar reflection
+//   REFLECTION_MAP  some has an authored map of reflections
 //   NO_SCREEN_REFLECTION  none has screen-space reflections
 // Techniques: water.fresnel-approx, water.reflection-refraction-maps
 
@@ -11,6 +12,7 @@ const int kSchlick = 1;
 const int kByAngle = 2;
 const int kScreenReflection = 0;
 const int kPlanarReflection = 2;
+const int kMapReflection = 3;
 
 // Reflectance of a water surface, from above or below.
 float water_reflectance(WaterRecord water, bool above, float cosine) {
@@ -30,6 +32,21 @@ int reflection_of(WaterRecord water) {
     return kScreenReflection;
 #endif
 }
+
+#ifdef REFLECTION_MAP
+layout(binding = kReflectionImageUnit) uniform sampler2D reflection_image;  // repeats
+uniform vec2 reflection_plane;  // height above the water, side of a tile [m]
+
+// The authored map where a mirrored ray meets its plane (Ts'o and Barsky 1987), lit by `falling`: irradiance over pi.
+vec3 authored_reflection(WaterRecord water, vec3 position, vec3 away, vec3 falling) {
+    float path = (reflection_plane.x + water.origin.y - position.y) / max(away.y, 0.02);
+    vec3 hit = world_to_water(water, position + path * away - water.origin.xyz);
+    float texels = float(textureSize(reflection_image, 0).x) / reflection_plane.y;
+    float eye = distance(position, view.camera_ws.xyz);
+    float pixel = (eye + path) * 2.0 * length(view.ray_up.xyz) * view.size.w / max(away.y, 0.02);
+    return falling * textureLod(reflection_image, hit.xz / reflection_plane.y, log2(max(pixel * texels, 1.0))).rgb;
+}
+#endif
 
 #ifdef PLANAR
 // The scene from a camera mirrored in the surface at rest, upside down; w: distance along its axis [m], 0 where empty.
