@@ -405,13 +405,16 @@ Command add_info(CLI::App& program, std::string& file) {
 
 Command add_import(CLI::App& program, ImportOptions& options) {
     CLI::App* app = program.add_subcommand("import", "Convert other formats to glTF");
-    app->add_option("kind", options.kind, "of the data: bvh, ict-facekit, makehuman or markers")
+    app->add_option(
+           "kind", options.kind, "of the data: bvh, face-model, ict-facekit, makehuman or markers")
         ->type_name("KIND")
         ->required()
-        ->check(CLI::IsMember({"bvh", "ict-facekit", "makehuman", "markers"}));
+        ->check(CLI::IsMember({"bvh", "face-model", "ict-facekit", "makehuman", "markers"}));
     app->add_option(
            "in", options.in,
-           "folder with the data, the .bvh file of motion or the .trc file of markers")
+           "folder with the data, the .bvh file of motion, the .trc file of markers or the text of "
+           "a "
+           "face model")
         ->type_name("IN")
         ->required();
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
@@ -442,6 +445,11 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "scale [m per unit of the file; by default one that makes a person 1.65 m high],\n"
         "up [y, z; by default from the feet to the hips], rate [keys per second; by default those\n"
         "of the file], positions [add, replace: what channels of positions do to the offset].\n"
+        "face-model: parameters that rotate, translate or scale weighted vertices of an OBJ mesh, "
+        "as\n"
+        "shapes. Lines of the file: mesh FILE.obj, unit METERS, parameter NAME, then one of\n"
+        "rotate X Y Z by DEGREES about X Y Z, translate X Y Z, scale X Y Z about X Y Z, and any\n"
+        "number of vertex NUMBER WEIGHT and ball X Y Z RADIUS.\n"
         "ict-facekit: the neutral face of ICT FaceKit with all expressions in its folder "
         "FaceXModel;\n"
         "where one half of an expression is missing, the other is mirrored.\n"
@@ -466,6 +474,7 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "Examples:\n"
         "  limn import bvh walk.bvh -o walk.glb --set scale=0.01 --set up=z\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"
+        "  limn import face-model face.txt -o face.glb\n"
         "  limn import makehuman makehuman -o person.glb\n"
         "  limn import markers take.trc -o take.glb\n"
         "  limn import markers take.trc --head -o take.glb\n"

@@ -3,6 +3,7 @@
 #include "content/app/commands/bake_recipe.h"
 #include "content/app/commands/import_markers.h"
 #include "content/app/commands/progress.h"
+#include "content/load/faces/face_model.h"
 #include "content/load/faces/ict_facekit.h"
 #include "content/load/faces/makehuman.h"
 #include "content/load/gltf/gltf_write.h"
@@ -11,7 +12,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace limn {
@@ -33,6 +36,11 @@ Status import_bvh(const ImportOptions& options) {
         box.max.y - box.min.y, has_clip ? scene.clips[0].sheets[0].times.size() : 0,
         has_clip ? scene.clips[0].duration : 0.0f);
     return Done{};
+}
+
+Result<GltfScene> import_face_model(const std::string& path) {
+    return make_face_model_scene(
+        std::filesystem::path(path).stem().string(), LIMN_TRY(load_face_model(path)));
 }
 
 }  // namespace
@@ -68,8 +76,9 @@ Status run_import(const ImportOptions& options) {
         progress->update(done);
     };
     const GltfScene scene = LIMN_TRY(
-        options.kind == "makehuman" ? import_makehuman(options.in, show)
-                                    : import_ict_facekit(options.in, show));
+        options.kind == "makehuman"    ? import_makehuman(options.in, show)
+        : options.kind == "face-model" ? import_face_model(options.in)
+                                       : import_ict_facekit(options.in, show));
     LIMN_TRY(save_glb(options.out, scene));
     progress.reset();
 
