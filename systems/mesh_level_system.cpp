@@ -66,10 +66,12 @@ void choose_mesh_levels(
             const int current =
                 now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
             const float distance = glm::length(position_of(transform) - eye);
+            const float pixels = projected_span(levels, transform.world, distance, *active, rows);
             const int level = choose_mesh_level(
-                projected_span(levels, transform.world, distance, *active, rows),
-                static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
-            instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
+                pixels, static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
+            const bool is_hidden = !(instance.mesh.index < kNoAsset);
+            const bool hides = pixels < levels.drawn_from * (is_hidden ? 1.1f : 1.0f);
+            instance.mesh = hides ? MeshId{} : levels.meshes[static_cast<std::size_t>(level)];
         });
 }
 

@@ -13,8 +13,9 @@ namespace limn {
 [[nodiscard]] int
 choose_mesh_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
 
-/// Sets MeshInstance::mesh to the level that suits the distance to the active camera, in an image
-/// of Rendering::level_rows: what is simulated depends on the world alone, not on a window.
+/// Sets MeshInstance::mesh to the level, or to none below MeshLevels::drawn_from, that suits the
+/// distance to the active camera, in an image of Rendering::level_rows: what is simulated depends
+/// on the world alone, not on a window.
 void choose_mesh_levels(
     Query<const MeshLevels, const WorldTransform, MeshInstance> entities,
     Query<const Camera, const WorldTransform> cameras, OptionalRes<const Rendering> rendering);

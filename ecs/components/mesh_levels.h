@@ -13,6 +13,7 @@ struct MeshLevels {
     std::vector<MeshId> meshes;
     float span = 1.0f;
     float pixels_per_quad = 8.0f;
+    float drawn_from = 0.0f;
 };
 
 LIMN_FIELDS(MeshLevels) {
@@ -21,6 +22,11 @@ LIMN_FIELDS(MeshLevels) {
     LIMN_FIELD(
         pixels_per_quad, "wanted length of a quad in an image of rendering.level_rows, 1080", "px",
         0.1, 10000);
+    LIMN_FIELD(
+        drawn_from,
+        "length of `span` in such an image below which the entity is not drawn, as the teeth of a "
+        "face far away",
+        "px", 0, 10000);
 }
 
 }  // namespace limn

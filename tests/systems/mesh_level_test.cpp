@@ -62,4 +62,29 @@ TEST_CASE(
     CHECK(mesh_of(large) == 5);
 }
 
+TEST_CASE(
+    "mesh_levels: what is smaller than it is drawn from has no mesh, and does not flicker"
+    * technique("engine.lod-mesh")) {
+    World world;
+    const std::vector<MeshId> meshes = {{4}, {5}};
+    // One meter is 540 / d pixels long.
+    world.create(Transform{}, Camera{.fov_y = radians(90.0f)});
+    const Entity tooth = world.create(
+        Transform{.position = {0, 0, -1}},
+        MeshLevels{.meshes = meshes, .span = 1, .pixels_per_quad = 100, .drawn_from = 100},
+        MeshInstance{.mesh = meshes[0], .material = {}});
+    Schedule schedule = make_world_schedule();
+    start_world(world);
+    const auto mesh_at = [&](float distance) {
+        world.get<Transform>(tooth).position.z = -distance;
+        step_world(world, schedule);
+        return std::as_const(world).get<MeshInstance>(tooth).mesh;
+    };
+    CHECK(mesh_at(1) == MeshId{5});
+    CHECK(mesh_at(5.3f) == MeshId{4});
+    CHECK(mesh_at(5.5f) == MeshId{});
+    CHECK(mesh_at(5.3f) == MeshId{});   // 102 px: not yet 10 % beyond
+    CHECK(mesh_at(4.8f) == MeshId{4});  // 112 px
+}
+
 }  // namespace limn::mesh_level_test

@@ -5,6 +5,7 @@
 #include "content/make/models/merge_joints.h"
 #include "ecs/base/log.h"
 
+#include <glm/geometric.hpp>
 #include <meshoptimizer.h>
 
 #include <algorithm>
@@ -73,16 +74,41 @@ std::vector<Vec3> spread_limbs(const MeshData& mesh, float spread) {
     return positions;
 }
 
+/// Positions of which those of dark vertices are closer to the center.
+std::vector<Vec3> sunk_by_color(const MeshData& mesh, float depth) {
+    std::vector<Vec3> positions = mesh.positions;
+    if (depth <= 0 || mesh.colors.size() != positions.size()) {
+        return positions;
+    }
+    const Vec3 size = extent_of(mesh, mesh.indices);
+    const float deepest = depth * std::max({size.x, size.y, size.z});
+    Vec3 center(0);
+    for (const Vec3& p : positions) {
+        center += p / static_cast<float>(positions.size());
+    }
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        const Vec3 color = mesh.colors[v];
+        const float dark = 1 - (color.x + color.y + color.z) / 3;
+        const Vec3 inwards = center - positions[v];
+        const float distance = glm::length(inwards);
+        if (distance > 0) {
+            positions[v] += inwards / distance * (deepest * dark);
+        }
+    }
+    return positions;
+}
+
 }  // namespace
 
-void simplify_mesh(MeshData& mesh, std::size_t triangles) {
+void simplify_mesh(MeshData& mesh, std::size_t triangles, float colors) {
     if (3 * triangles >= mesh.indices.size()) {
         return;
     }
+    const std::vector<Vec3> positions = sunk_by_color(mesh, colors);
     std::vector<std::uint32_t> indices(mesh.indices.size());
     indices.resize(meshopt_simplify(
-        indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.positions[0].x,
-        mesh.positions.size(), sizeof(Vec3), 3 * triangles, kLargestError));
+        indices.data(), mesh.indices.data(), mesh.indices.size(), &positions[0].x, positions.size(),
+        sizeof(Vec3), 3 * triangles, kLargestError));
     keep_triangles(mesh, std::move(indices));
 }
 
@@ -122,7 +148,7 @@ MeshData make_simplified(const SimplifiedShape& shape, const Assets& assets) {
     MeshData mesh = assets.meshes[shape.mesh.index];
     mesh.pieces.clear();
     const auto triangles = static_cast<std::size_t>(std::max(shape.triangles, 4));
-    shape.merge ? merge_mesh(mesh, triangles) : simplify_mesh(mesh, triangles);
+    shape.merge ? merge_mesh(mesh, triangles) : simplify_mesh(mesh, triangles, shape.colors);
     const auto skeleton = std::ranges::find(assets.skeletons, mesh.name, &SkeletonData::name);
     const auto skin = std::ranges::find(assets.skins, mesh.name, &SkinData::name);
     if (shape.joints > 0 && !mesh.skin.empty()) {

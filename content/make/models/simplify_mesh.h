@@ -9,8 +9,10 @@ namespace limn {
 
 /// Collapses edges until about `triangles` are left, or until the error would exceed 5 % of the
 /// size of the mesh. Unused vertices are removed, with their skin weights and morph targets; the
-/// others keep their positions, and closed surfaces stay closed.
-void simplify_mesh(MeshData& mesh, std::size_t triangles);
+/// others keep their positions, and closed surfaces stay closed. With `colors` above 0, dark
+/// vertices count as that fraction of the size closer to the center than bright ones: a line
+/// between colors is then an edge of the shape, and stays.
+void simplify_mesh(MeshData& mesh, std::size_t triangles, float colors = 0);
 
 /// Merges vertices in cells of a grid until at most `triangles` are left, for what is small on
 /// screen: surfaces may join, holes and fingers vanish. Vertices that are left keep everything.
@@ -20,6 +22,7 @@ struct SimplifiedShape {
     MeshId mesh;
     int triangles = 300;
     bool merge = false;
+    float colors = 0;
     int joints = 0;
 };
 
@@ -29,6 +32,11 @@ LIMN_FIELDS(SimplifiedShape) {
     LIMN_FIELD(
         merge, "lets surfaces join and details vanish: a few hundred triangles of anything, for "
                "what is far away");
+    LIMN_FIELD(
+        colors,
+        "how much edges between bright and dark vertex colors count, such as those of lips, as if "
+        "black were this fraction of the size deeper than white; not for merge",
+        "", 0, 1);
     LIMN_FIELD(
         joints,
         "its skin needs only as many of the first joints: the others, such as fingers, "
