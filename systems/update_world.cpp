@@ -36,6 +36,7 @@
 #include "systems/crowd/flock_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/faces/skin_pull_system.h"
+#include "systems/faces/wrinkle_ladder_system.h"
 #include "systems/faces/wrinkle_response_system.h"
 #include "systems/faces/wrinkle_system.h"
 #include "systems/faces/wrinkle_track_system.h"
@@ -159,6 +160,7 @@ void add_animation_systems(SystemList& systems) {
     systems.add<update_attachments>(Animate, Both);
     systems.add<prepare_wrinkles>(Create, Both);
     systems.add<prepare_wrinkle_responses>(Create, Both);
+    systems.add<update_wrinkle_channels>(Animate, Both);   // after poses: their clips' weights
     systems.add<update_wrinkle_responses>(Animate, Both);  // after poses: measures the skin
 }
 
@@ -231,7 +233,9 @@ void add_camera_systems(SystemList& systems) {
     systems.add<update_orbit_cameras>(View, Both);
     systems.add<update_autofocus>(View, Both);  // after everything that moves cameras
     systems.add<adjust_lenses>(View);
-    systems.add<choose_pose_rates>(View, Both);    // likewise, for the next step
+    systems.add<choose_pose_rates>(View, Both);  // likewise, for the next step
+    systems.add<add_wrinkle_rungs>(Create, Both);
+    systems.add<climb_wrinkle_ladders>(View, Both);
     systems.add<choose_mesh_levels>(View, Both);   // after everything that moves cameras
     systems.add<choose_pose_joints>(View, Both);   // after meshes: what they need
     systems.add<update_relief_boxes>(View, Both);  // likewise

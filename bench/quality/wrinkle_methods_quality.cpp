@@ -111,7 +111,8 @@ Status measure_oat(gpu::Device& device, QualityReport& report) {
     const std::vector<Vec4> found = LIMN_TRY(oracle::evaluate_shader(
         device, "#include \"lib/wrinkle_maps.glsl\"",
         "uint k = i / 7u * 7u;\n"
-        "vec2 f = wrinkle_influence(inputs[k], inputs[k + 1u], inputs[k + 2u], inputs[k + 3u]);\n"
+        "vec2 f = wrinkle_influence(inputs[k], inputs[k + 1u], 0.0, inputs[k + 2u], "
+        "inputs[k + 3u], 0.0);\n"
         "y.xyz = compose_by_lerp(inputs[k + 4u].xyz, inputs[k + 5u].xyz, inputs[k + 6u].xyz, f);",
         inputs));
     double error = 0;

@@ -24,7 +24,7 @@ int limit_wrinkle_map(ImageData& map, float max_square) {
     int beyond = 0;
     const auto texels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
     for (std::size_t i = 0; i < std::min(texels, map.pixels.size() / 4); ++i) {
-        const Vec2 xy = Vec2(map.pixels[4 * i] - 128, map.pixels[4 * i + 1] - 128) / kUnit;
+        const Vec2 xy = wrinkle_normal_at(map, i);
         const float length2 = glm::dot(xy, xy);
         if (length2 <= max_square) {
             continue;

@@ -1,14 +1,11 @@
 #pragma once
 
 #include "ecs/components/surface.h"
+#include "ecs/components/wrinkle_limit.h"
 
 #include <span>
 
 namespace limn {
-
-/// x^2 + y^2 of normals up to which the fit to the unit sphere (WrinkleMethod::Sphere) is off by
-/// less than 8.76 degrees at any strength.
-inline constexpr float kSteepestWrinkle = 0.6f;
 
 /// Clamps the normals of an 8-bit wrinkle map, flat at 128, to x^2 + y^2 <= `max_square` (0 .. 1),
 /// keeping their direction along the skin. Returns how many were steeper; 0 for other formats

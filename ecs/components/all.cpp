@@ -94,6 +94,7 @@
 #include "ecs/components/weather.h"
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_comparison.h"
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/hierarchy.h"
@@ -202,6 +203,8 @@ void register_all_components() {
     register_component<SurfaceBindingState>();
     register_component<WrinkleSurface>();
     register_component<WrinkleMaps>();
+    register_component<WrinkleLadder>();
+    register_component<WrinkleRungs>();
     register_component<WrinkleResponse>();
     register_component<MeasuredWrinkles>();
     register_component<Furrows>();

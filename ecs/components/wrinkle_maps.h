@@ -16,8 +16,23 @@ namespace limn {
 // Techniques: wrinkle.maps.animation, wrinkle.maps.masks, wrinkle.maps.texture-set,
 //     wrinkle.maps.weights
 
+/// Weights of whole expressions, for artists.
+enum class WrinklePreset : std::uint8_t {
+    Neutral,
+    Surprised,    ///< all of the stretched map
+    Sour,         ///< all of the compressed map
+    Disapproval,  ///< brows and lips compressed
+    Frown,        ///< brows drawn together
+    Smile,        ///< cheeks and the corners of the eyes compressed
+    Pout,         ///< lips and chin compressed
+};
+
+inline constexpr const char* kWrinklePresetNames =
+    "neutral surprised sour disapproval frown smile pout";
+
 /// How far each region shows a wrinkle map: -1 the stretched one, 0 none, 1 the compressed one.
 struct WrinkleWeights {
+    WrinklePreset preset = WrinklePreset::Neutral;
     float left_brow = 0;
     float right_brow = 0;
     float middle_brow = 0;
@@ -26,11 +41,15 @@ struct WrinkleWeights {
     float right_cheek = 0;
     float upper_left_cheek = 0;
     float upper_right_cheek = 0;
+    float chin = 0;
 
     bool operator==(const WrinkleWeights&) const = default;
 };
 
 LIMN_FIELDS(WrinkleWeights) {
+    LIMN_FIELD(
+        preset, .doc = "weights of a whole expression, to which those of regions are added",
+        .values = kWrinklePresetNames);
     LIMN_FIELD(left_brow, "red of first_masks", "", -1, 1);
     LIMN_FIELD(right_brow, "green of first_masks", "", -1, 1);
     LIMN_FIELD(middle_brow, "blue of first_masks", "", -1, 1);
@@ -39,14 +58,37 @@ LIMN_FIELDS(WrinkleWeights) {
     LIMN_FIELD(right_cheek, "green of second_masks", "", -1, 1);
     LIMN_FIELD(upper_left_cheek, "blue of second_masks", "", -1, 1);
     LIMN_FIELD(upper_right_cheek, "opacity of second_masks", "", -1, 1);
+    LIMN_FIELD(chin, "red of third_masks", "", -1, 1);
 }
 
-/// In the order of the channels of both masks.
-inline constexpr std::array<float WrinkleWeights::*, 8> kWrinkleRegions = {
-    &WrinkleWeights::left_brow,        &WrinkleWeights::right_brow,
-    &WrinkleWeights::middle_brow,      &WrinkleWeights::lips,
-    &WrinkleWeights::left_cheek,       &WrinkleWeights::right_cheek,
-    &WrinkleWeights::upper_left_cheek, &WrinkleWeights::upper_right_cheek};
+/// In the order of the channels of the masks.
+inline constexpr std::array<float WrinkleWeights::*, 9> kWrinkleRegions = {
+    &WrinkleWeights::left_brow,
+    &WrinkleWeights::right_brow,
+    &WrinkleWeights::middle_brow,
+    &WrinkleWeights::lips,
+    &WrinkleWeights::left_cheek,
+    &WrinkleWeights::right_cheek,
+    &WrinkleWeights::upper_left_cheek,
+    &WrinkleWeights::upper_right_cheek,
+    &WrinkleWeights::chin};
+
+/// Shapes of a mesh with these names are channels of a clip that set the weights (see
+/// wrinkle_track_system.h).
+inline constexpr std::array<const char*, kWrinkleRegions.size()> kWrinkleChannels = {
+    "wrinkle.left_brow",
+    "wrinkle.right_brow",
+    "wrinkle.middle_brow",
+    "wrinkle.lips",
+    "wrinkle.left_cheek",
+    "wrinkle.right_cheek",
+    "wrinkle.upper_left_cheek",
+    "wrinkle.upper_right_cheek",
+    "wrinkle.chin"};
+
+/// Weights of the regions, -1 .. 1, with those of the preset; NaN counts as 0.
+[[nodiscard]] std::array<float, kWrinkleRegions.size()>
+region_weights(const WrinkleWeights& weights);
 
 /// How two wrinkle maps and the skin's own normals are combined.
 enum class WrinkleBlend : std::uint8_t {
@@ -67,6 +109,7 @@ struct WrinkleMaps {
     ImageId compressed = {};
     ImageId first_masks = {};
     ImageId second_masks = {};
+    ImageId third_masks = {};
     ImageId target = {};  ///< rendered to; keeps its size and format
     WrinkleBlend blend = WrinkleBlend::Lerp;
 };
@@ -76,7 +119,8 @@ LIMN_FIELDS(WrinkleMaps) {
     LIMN_FIELD(stretched, "wrinkle map of skin that is stretched everywhere: weight -1");
     LIMN_FIELD(compressed, "wrinkle map of skin that is compressed everywhere: weight 1");
     LIMN_FIELD(first_masks, "masks of four regions, one per channel");
-    LIMN_FIELD(second_masks, "four more; without it there are four");
+    LIMN_FIELD(second_masks, "four more; without it these have no effect");
+    LIMN_FIELD(third_masks, "the chin, in red; without it there is none");
     LIMN_FIELD(target, "image to render to");
     LIMN_FIELD(
         blend, .doc = "normals interpolated and then added, or slopes added: higher in between",

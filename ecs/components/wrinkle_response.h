@@ -14,6 +14,38 @@ namespace limn {
 // wrinkles of a region shows the compressed map there, compression along them the stretched one.
 // Techniques: skin.pipeline
 
+enum class WrinkleRegion : std::uint8_t {
+    LeftBrow,
+    RightBrow,
+    MiddleBrow,
+    Lips,
+    LeftCheek,
+    RightCheek,
+    UpperLeftCheek,
+    UpperRightCheek,
+    Chin,
+};
+
+/// How one region responds, in place of the values of its WrinkleResponse.
+struct RegionResponse {
+    WrinkleRegion region = WrinkleRegion::LeftBrow;
+    float compressed_gain = 1;
+    float stretched_gain = 1;
+    float bias = 0;
+    float smoothing = 0.06f;
+};
+
+LIMN_FIELDS(RegionResponse) {
+    LIMN_FIELD(
+        region, .doc = "region of the masks",
+        .values = "left_brow right_brow middle_brow lips left_cheek right_cheek upper_left_cheek "
+                  "upper_right_cheek chin");
+    LIMN_FIELD(compressed_gain, "as in wrinkle_response", "", 0, 10);
+    LIMN_FIELD(stretched_gain, "as in wrinkle_response", "", 0, 10);
+    LIMN_FIELD(bias, "as in wrinkle_response", "", -1, 1);
+    LIMN_FIELD(smoothing, "as in wrinkle_response", "s", 0, 10);
+}
+
 /// On an entity with WrinkleMaps and a deformed mesh whose regions have directions.
 struct WrinkleResponse {
     float compressed_gain = 1;
@@ -23,6 +55,7 @@ struct WrinkleResponse {
     float lambda = 1.05f;
     float beta = 4;
     float share = 0.5f;
+    std::vector<RegionResponse> regions{};
 };
 
 LIMN_FIELDS(WrinkleResponse) {
@@ -41,6 +74,7 @@ LIMN_FIELDS(WrinkleResponse) {
         "fraction of the maps' influence that regions have; the rest is for a wrinkle_surface with "
         "that activation, whose wrinkles are where the skin is compressed",
         "", 0, 1);
+    LIMN_FIELD(regions, "regions that respond differently");
 }
 
 /// The weights with which its maps are drawn.

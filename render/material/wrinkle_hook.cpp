@@ -23,6 +23,7 @@ constexpr HookDefinition kWrinkleDefinitions[] = {
     {kWrinkleIndependent, "WRINKLE_INDEPENDENT"},
     {kWrinklePhoto, "WRINKLE_PHOTO"},
     {kWrinkleBounce, "WRINKLE_BOUNCE"},
+    {kWrinkleShade, "WRINKLE_SHADE"},
 };
 
 /// Only skin that wrinkles reads its wrinkle map, unless the strain is visualized instead.
@@ -34,6 +35,10 @@ void add_wrinkles(SurfaceFeatures& features, std::uint16_t instance) {
     if (shows_strain || features.maps.has(layout::kWrinkleSlot)) {
         features.hooks.set(kWrinkleHook, static_cast<std::uint16_t>(instance & ~kWrinkled));
     }
+}
+
+bool darkens(WrinkleMethod method) {
+    return method == WrinkleMethod::Alpha || method == WrinkleMethod::Directional;
 }
 
 struct WrinkleBit {
@@ -64,7 +69,7 @@ const SurfaceHook kWrinkleHook = {
     .add = add_wrinkles,
 };
 
-std::uint16_t wrinkle_features(const WrinkleSurface& surface) {
+std::uint16_t wrinkle_features(const WrinkleSurface& surface, bool shades) {
     const WrinkleMethod method = surface.method;
     if (method == WrinkleMethod::StrainView) {
         return wrinkle_bits({{true, kWrinkleView}});
@@ -75,6 +80,7 @@ std::uint16_t wrinkle_features(const WrinkleSurface& surface) {
          {method == WrinkleMethod::Isometric && surface.bounce, kWrinkleBounce},
          {method == WrinkleMethod::Model, kWrinkleModel},
          {method == WrinkleMethod::Photo, kWrinklePhoto},
+         {darkens(method) || surface.shade_from > 0 || shades, kWrinkleShade},
          {layers, kWrinkleLayers},
          {layers && surface.combine == WrinkleCombine::Independent, kWrinkleIndependent},
          {surface.fade, kWrinkleFade},
@@ -90,6 +96,7 @@ column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>&
         {{true, kWrinkleColumns},
          {shown(WrinkleMethod::Blend), kWrinkleBlend},
          {surface.bounce && shown(WrinkleMethod::Isometric), kWrinkleBounce},
+         {shown(WrinkleMethod::Alpha) || shown(WrinkleMethod::Directional), kWrinkleShade},
          {surface.fade, kWrinkleFade},
          {!surface.interpolate, kWrinkleFlat}});
 }

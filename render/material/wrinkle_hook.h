@@ -26,13 +26,14 @@ enum WrinkleFeature : std::uint16_t {
     kWrinkleIndependent = 1u << 9,  // with kWrinkleLayers: the second one covers the first
     kWrinklePhoto = 1u << 10,       // light from above is painted on the wrinkles
     kWrinkleBounce = 1u << 11,      // light bounces within isometric folds
+    kWrinkleShade = 1u << 12,       // lit slopes are darkened
 };
 
 extern const SurfaceHook kWrinkleHook;
 
 /// The bits of skin with these wrinkles; where each column of the image has a method of its own,
 /// those of `columns`.
-[[nodiscard]] std::uint16_t wrinkle_features(const WrinkleSurface& surface);
+[[nodiscard]] std::uint16_t wrinkle_features(const WrinkleSurface& surface, bool shades);
 [[nodiscard]] std::uint16_t
 column_features(const WrinkleSurface& surface, const std::vector<WrinkleMethod>& columns);
 

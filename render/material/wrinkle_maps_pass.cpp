@@ -1,5 +1,6 @@
 #include "render/material/wrinkle_maps_pass.h"
 
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/world.h"
@@ -9,6 +10,8 @@
 #include "render/material/material_pool.h"
 #include "render/shaders/wrinkle_maps_gpu.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -16,16 +19,6 @@
 
 namespace limn {
 namespace {
-
-/// Weights of four regions from `first` on.
-Vec4 weights_of(const WrinkleWeights* weights, std::size_t first) {
-    Vec4 found = {0, 0, 0, 0};
-    for (std::size_t i = 0; weights != nullptr && i < 4; ++i) {
-        const float weight = weights->*kWrinkleRegions[first + i];
-        found[static_cast<int>(i)] = std::clamp(finite_or(weight, 0.0f), -1.0f, 1.0f);
-    }
-    return found;
-}
 
 /// Scale and offset from texels of a wrinkle map to normals; 128 of 255 is exactly flat.
 Vec2 decoding_of(const gpu::Texture& map) {
@@ -61,11 +54,19 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         const bool measures = response != nullptr && measured != nullptr;
         const WrinkleWeights* const weights =
             measures ? &measured->weights : frame.world->find<WrinkleWeights>(entity);
-        const float strength = measures ? response->share : 1.0f;
-        const bool more = images.find_texture(maps.second_masks) != nullptr;
-        const std::array<ImageId, 5> sources = {
-            maps.base, maps.stretched, maps.compressed, maps.first_masks,
-            more ? maps.second_masks : maps.first_masks};
+        const auto* const found = frame.world->find<WrinkleRungs>(entity);
+        const WrinkleRungs rungs = found != nullptr ? *found : WrinkleRungs{};
+        // Where the surface measures no strain, regions have the whole influence.
+        const float strength =
+            rungs.maps * (measures ? glm::mix(1.0f, response->share, rungs.strain) : 1.0f);
+        const auto has = [&](ImageId masks) { return images.find_texture(masks) != nullptr; };
+        const std::array<ImageId, 6> sources = {
+            maps.base,
+            maps.stretched,
+            maps.compressed,
+            maps.first_masks,
+            has(maps.second_masks) ? maps.second_masks : maps.first_masks,
+            has(maps.third_masks) ? maps.third_masks : maps.first_masks};
         const ImageLayer target = find_drawn_image(images, maps.target);
         const auto is_unfit = [&](ImageId source) {
             return images.find_texture(source) == nullptr || source == maps.target
@@ -85,22 +86,27 @@ void WrinkleMapsEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         };
         const gpu::Texture& array = images.array(target.array);
         const TextureId composed = create_drawn_image(graph, images, target);
-        const Vec4 first = weights_of(weights, 0);
-        const Vec4 second = more ? weights_of(weights, 4) : Vec4(0);
+        const std::array<float, kWrinkleRegions.size()> set =
+            weights != nullptr ? region_weights(*weights)
+                               : std::array<float, kWrinkleRegions.size()>{};
+        const Vec4 first = {set[0], set[1], set[2], set[3]};
+        const Vec4 second = has(maps.second_masks) ? Vec4(set[4], set[5], set[6], set[7]) : Vec4(0);
+        const float third = has(maps.third_masks) ? set[8] : 0.0f;
         const Vec4 decoding = {
             decoding_of(*images.find_texture(maps.stretched)),
             decoding_of(*images.find_texture(maps.compressed))};
         const bool by_slopes = maps.blend == WrinkleBlend::Slopes;
         add_fullscreen_pass(
             graph, "wrinkle maps",
-            {array_of(0), array_of(1), array_of(2), array_of(3), array_of(4), read(0), read(1),
-             read(2), read(3), read(4)},
+            {array_of(0), array_of(1), array_of(2), array_of(3), array_of(4), array_of(5), read(0),
+             read(1), read(2), read(3), read(4), read(5)},
             {target_level(discarded(composed), 0)}, program,
-            [&array, first, second, decoding, by_slopes,
+            [&array, first, second, third, decoding, by_slopes,
              strength](PassContext&, const gpu::Program& shader) {
                 shader.set("size", Vec2(array.width(), array.height()));
                 shader.set("first_weights", first);
                 shader.set("second_weights", second);
+                shader.set("third_weight", third);
                 shader.set("decoding", decoding);
                 shader.set("strength", strength);
                 shader.set("by_slopes", by_slopes ? 1 : 0);

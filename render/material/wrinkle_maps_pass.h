@@ -22,8 +22,8 @@ struct WrinkleMapsEffect {
     static Result<WrinkleMapsEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     void collect(FrameData& frame);
-    /// Skips a WrinkleMaps that lacks an image other than the second masks, reads its own target,
-    /// or has images of different aspect ratios. Weights are clamped to -1 .. 1, NaN is 0.
+    /// Skips a WrinkleMaps that lacks an image other than second and third masks, reads its own
+    /// target, or has images of different aspect ratios. Weights are clamped to -1 .. 1, NaN is 0.
     void draw_shared(FrameGraph& graph, const FrameData& frame);
 };
 

@@ -2,6 +2,8 @@
 
 #include "ecs/components/transform.h"
 #include "ecs/components/wrinkle_comparison.h"
+#include "ecs/components/wrinkle_ladder.h"
+#include "ecs/components/wrinkle_maps.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/device.h"
@@ -195,12 +197,15 @@ bool is_shade(WrinkleMethod method) {
            || method == WrinkleMethod::Photo;
 }
 
-TierWeights tier_weights(const WrinkleSurface& surface, float distance, bool tangents) {
-    const float any = fade_until(surface.none_from, distance);
+TierWeights tier_weights(
+    const WrinkleSurface& surface, float distance, bool tangents, const WrinkleRungs& rungs,
+    bool has_maps) {
+    const float any = rungs.maps * fade_until(surface.none_from, distance);
     const float own = is_shade(surface.method) ? 1.0f
-                      : tangents               ? fade_until(surface.shade_from, distance)
-                                               : 0.0f;
-    return {.own = any * own, .shade = any * (1 - own)};
+                      : tangents ? rungs.strain * fade_until(surface.shade_from, distance)
+                                 : 0.0f;
+    // Maps of the whole face replace slopes, too.
+    return {.own = any * own, .shade = has_maps && tangents ? 0.0f : any * (1 - own)};
 }
 
 /// Distance from the camera to the center of an instance [m].
@@ -263,7 +268,9 @@ bool WrinkleEffect::prepare(const FrameData& frame, ViewData& view) {
         pack_columns(wrinkle_columns(comparison), column_borders(comparison)));
     Variant& lit = view.lighting.variant;
     const auto has = [&](unsigned bits) { return frame.shapes->has_hook(kWrinkleHook, bits); };
-    lit.add_if(has(kWrinkleBlend | kWrinkleFade | kWrinkleBounce), "SMOOTH_NORMALS");
+    lit.add_if(
+        has(kWrinkleBlend | kWrinkleFade | kWrinkleBounce | kWrinkleShade), "SMOOTH_NORMALS");
+    lit.add_if(has(kWrinkleShade), "SHADED_SKIN");
     lit.add_if(has(kWrinkleBlend), "BLENDED_SKIN");
     lit.add_if(has(kWrinkleBounce), "FOLD_LIGHT");
     return true;
@@ -283,9 +290,12 @@ void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
         }
         const auto& state = *frame.world->find<WrinkleState>(entity);
         const auto& surface = *frame.world->find<WrinkleSurface>(entity);
+        const auto* rungs = frame.world->find<WrinkleRungs>(entity);
         const TierWeights weights = tier_weights(
             surface, distance_to_shape(frame, entity, shape),
-            frame.meshes->meshes()[shape.mesh.index].tangents);
+            frame.meshes->meshes()[shape.mesh.index].tangents,
+            rungs != nullptr ? *rungs : WrinkleRungs{},
+            rungs != nullptr && frame.world->find<WrinkleMaps>(entity) != nullptr);
         layout::WrinkleJob job = make_job(surface, state, find_rest(pool, state), weights, shape);
         displaced = displaced || job.heights != 0;
         if (shape.wrinkle_columns) {

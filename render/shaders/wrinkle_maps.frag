@@ -9,10 +9,12 @@ layout(binding = kWrinkleStretchedUnit) uniform sampler2D stretched;
 layout(binding = kWrinkleCompressedUnit) uniform sampler2D compressed;
 layout(binding = kWrinkleFirstMasksUnit) uniform sampler2D first_masks;
 layout(binding = kWrinkleSecondMasksUnit) uniform sampler2D second_masks;
+layout(binding = kWrinkleThirdMasksUnit) uniform sampler2D third_masks;
 
 uniform vec2 size;            // of the target [px]
 uniform vec4 first_weights;   // -1 .. 1
 uniform vec4 second_weights;
+uniform float third_weight;   // of the chin
 uniform vec4 decoding;        // scale and offset of texels of the stretched map (xy) and the compressed one (zw)
 uniform float strength;       // factor of the influence of both maps, 0 .. 1
 uniform bool by_slopes;
@@ -23,7 +25,8 @@ void main() {
     vec2 uv = gl_FragCoord.xy / size;
     vec4 skin = textureLod(base, uv, 0.0);
     vec2 influence = strength * wrinkle_influence(
-        textureLod(first_masks, uv, 0.0), textureLod(second_masks, uv, 0.0), first_weights, second_weights);
+        textureLod(first_masks, uv, 0.0), textureLod(second_masks, uv, 0.0), textureLod(third_masks, uv, 0.0).r,
+        first_weights, second_weights, third_weight);
     if (influence == vec2(0.0)) {
         normal = skin;  // unchanged, to the bit
         return;

@@ -12,6 +12,7 @@ const uint kWrinkleStretchedUnit = 1u;
 const uint kWrinkleCompressedUnit = 2u;
 const uint kWrinkleFirstMasksUnit = 3u;
 const uint kWrinkleSecondMasksUnit = 4u;
+const uint kWrinkleThirdMasksUnit = 5u;
 
 #ifdef __cplusplus
 }  // namespace limn::layout

@@ -8,6 +8,7 @@
 #include "ecs/components/vertex_offset.h"
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_comparison.h"
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/buffer_texture.h"
@@ -198,15 +199,18 @@ void DeformedList::find_wrinkles(
     Entry& entry) const {
     const auto* wrinkles = world.find<WrinkleState>(entry.entity);
     const auto* surface = world.find<WrinkleSurface>(entry.entity);
+    const auto* rungs = world.find<WrinkleRungs>(entry.entity);
     entry.wrinkled = wrinkles != nullptr && surface != nullptr
                      && surface->method != WrinkleMethod::None
+                     && (rungs == nullptr || rungs->maps > 0)
                      && wrinkles->mask.size() == entry.rest->vertex_count;
     entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
                             && meshes_->meshes()[entry.mesh.index].tangents;
     unsigned features = 0;
     if (entry.wrinkled) {
-        features =
-            entry.wrinkle_columns ? column_features(*surface, columns) : wrinkle_features(*surface);
+        const bool shades = rungs != nullptr || !meshes_->meshes()[entry.mesh.index].tangents;
+        features = entry.wrinkle_columns ? column_features(*surface, columns)
+                                         : wrinkle_features(*surface, shades);
     }
     const bool displaced = entry.wrinkled && !entry.wrinkle_columns && is_displaced(*surface)
                            && wrinkles->heights.size() == entry.rest->vertex_count;
@@ -225,7 +229,7 @@ void DeformedList::find_wrinkles(
         world.get<WorldTransform>(entry.entity).world,
         center(meshes_->meshes()[entry.mesh.index].bounds));
     entry.displacement =
-        surface->displacement
+        surface->displacement * (rungs != nullptr ? rungs->displaced : 1.0f)
         * fade_until(surface->displacement_until, glm::distance(world_center, eye));
     if (entry.displacement > 0) {
         entry.largest_fold = wrinkles->largest_fold;

@@ -86,7 +86,23 @@ source_of(const WrinkleMaps& maps, const MeshInstance& instance, const Assets& a
     }
     std::uint64_t hash = hash_combine(instance.mesh.index, mesh->version);
     hash = hash_combine(hash, maps.first_masks.index);
-    return hash_combine(hash, maps.second_masks.index) | 1;
+    hash = hash_combine(hash, maps.second_masks.index);
+    return hash_combine(hash, maps.third_masks.index) | 1;
+}
+
+/// What a region does.
+RegionResponse response_of(const WrinkleResponse& response, std::size_t region) {
+    for (const RegionResponse& own : response.regions) {
+        if (static_cast<std::size_t>(own.region) == region) {
+            return own;
+        }
+    }
+    return {
+        .region = static_cast<WrinkleRegion>(region),
+        .compressed_gain = response.compressed_gain,
+        .stretched_gain = response.stretched_gain,
+        .bias = response.bias,
+        .smoothing = response.smoothing};
 }
 
 }  // namespace
@@ -111,15 +127,17 @@ make_response_rest(const WrinkleMaps& maps, const MeshInstance& instance, const 
         make_wrinkle_rest(mesh.positions, mesh.indices, folds.across, WrinkleWeight::Angle, along);
 
     const std::vector<float> areas = vertex_areas(mesh);
-    const ImageData* const first = image_of(maps.first_masks, assets);
-    const ImageData* const second = image_of(maps.second_masks, assets);
+    const ImageData* const images[] = {
+        image_of(maps.first_masks, assets), image_of(maps.second_masks, assets),
+        image_of(maps.third_masks, assets)};
     float whole = 0;
     rest.areas.resize(vertices);
     for (std::size_t v = 0; v < vertices; ++v) {
-        const std::array<float, 4> low = mask_at(first, mesh.uvs[v]);
-        const std::array<float, 4> high = mask_at(second, mesh.uvs[v]);
+        const std::array<float, 4> masks[] = {
+            mask_at(images[0], mesh.uvs[v]), mask_at(images[1], mesh.uvs[v]),
+            mask_at(images[2], mesh.uvs[v])};
         for (std::size_t m = 0; m < kRegions; ++m) {
-            const float mask = m < 4 ? low[m] : high[m - 4];
+            const float mask = masks[m / 4][m % 4];
             // Nothing is measured where no region has a direction.
             rest.areas[v][m] = folds.mask[v] > 0 ? mask * areas[v] : 0.0f;
             rest.total[m] += rest.areas[v][m];
@@ -146,17 +164,16 @@ WrinkleWeights response_weights(
             }
         }
     }
+    const std::array<float, kRegions> set =
+        animated != nullptr ? region_weights(*animated) : std::array<float, kRegions>{};
     WrinkleWeights weights;
     for (std::size_t m = 0; m < kRegions; ++m) {
         const float total = rest.total[m];
+        const RegionResponse own = response_of(response, m);
         const float measured =
-            total > 0
-                ? (response.compressed_gain * sums[0][m] - response.stretched_gain * sums[1][m])
-                      / total
-                : 0.0f;
-        const float artist =
-            animated != nullptr ? finite_or(animated->*kWrinkleRegions[m], 0.0f) : 0.0f;
-        weights.*kWrinkleRegions[m] = std::clamp(artist + measured + response.bias, -1.0f, 1.0f);
+            total > 0 ? (own.compressed_gain * sums[0][m] - own.stretched_gain * sums[1][m]) / total
+                      : 0.0f;
+        weights.*kWrinkleRegions[m] = std::clamp(set[m] + measured + own.bias, -1.0f, 1.0f);
     }
     return weights;
 }
@@ -193,8 +210,8 @@ void update_wrinkle_responses(
         MeasuredWrinkles>
         faces,
     Query<const WrinkleWeights> animated, Query<const DeformerState> deformers,
-    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
-    Res<const FrameTime> time) {
+    Query<const Pose> poses, Query<const MorphWeights> morphs, Query<const WrinkleRungs> ladders,
+    Res<const Assets> assets, Res<const FrameTime> time) {
     std::vector<Vec3> positions;
     faces.each([&](Entity entity, const WrinkleResponse& response, const ResponseRest& rest,
                    const MeshInstance& instance, const Deformed& deformed,
@@ -202,6 +219,11 @@ void update_wrinkle_responses(
         const MeshSource source = find_mesh_source(
             instance.mesh, &deformed, deformers.find<const DeformerState>(entity), poses, morphs,
             *assets);
+        const auto* const rungs = ladders.find<const WrinkleRungs>(entity);
+        if (rungs != nullptr && rungs->maps == 0) {
+            measured.started = false;  // too far away to be seen: at once when it comes closer
+            return;
+        }
         if (source.data == nullptr || source.data->positions.size() != rest.areas.size()) {
             return;
         }
@@ -210,13 +232,15 @@ void update_wrinkle_responses(
             positions);
         const WrinkleWeights target = response_weights(
             response, rest, positions, animated.find<const WrinkleWeights>(entity));
-        const bool at_once = !measured.started || response.smoothing <= 0;
-        const float step = at_once ? 1.0f : 1 - std::exp(-time->step / response.smoothing);
-        measured.started = true;
-        for (float WrinkleWeights::*const region : kWrinkleRegions) {
-            float& weight = measured.weights.*region;
-            weight = step < 1 ? weight + step * (target.*region - weight) : target.*region;
+        for (std::size_t m = 0; m < kRegions; ++m) {
+            const float smoothing = response_of(response, m).smoothing;
+            const bool at_once = !measured.started || smoothing <= 0;
+            const float step = at_once ? 1.0f : 1 - std::exp(-time->step / smoothing);
+            float& weight = measured.weights.*kWrinkleRegions[m];
+            const float wanted = target.*kWrinkleRegions[m];
+            weight = step < 1 ? weight + step * (wanted - weight) : wanted;
         }
+        measured.started = true;
     });
 }
 

@@ -5,6 +5,7 @@
 #include "ecs/components/deformers.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/components/wrinkle_response.h"
 #include "ecs/query.h"
 #include "ecs/schedule.h"
@@ -29,15 +30,15 @@ void prepare_wrinkle_responses(
     Query<const ResponseRest> rests, Query<const MeasuredWrinkles> measured,
     Res<const Assets> assets, Commands commands);
 
-/// Steps MeasuredWrinkles. After poses and deformers.
+/// Steps MeasuredWrinkles, except of faces whose WrinkleRungs show none. After poses and deformers.
 void update_wrinkle_responses(
     Query<
         const WrinkleResponse, const ResponseRest, const MeshInstance, const Deformed,
         MeasuredWrinkles>
         faces,
     Query<const WrinkleWeights> animated, Query<const DeformerState> deformers,
-    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
-    Res<const FrameTime> time);
+    Query<const Pose> poses, Query<const MorphWeights> morphs, Query<const WrinkleRungs> ladders,
+    Res<const Assets> assets, Res<const FrameTime> time);
 
 // ---- parts of the above ----
 

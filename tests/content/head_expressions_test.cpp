@@ -6,13 +6,16 @@
 #include "content/make/head/head_visemes.h"
 #include "content/make/head/head_wrap.h"
 #include "content/speech/utterance.h"
+#include "systems/animation/clip_sampling.h"
 #include "tests/content/head_skin.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -383,6 +386,40 @@ TEST_CASE("head expressions: all parts have the same shapes, and joints move eac
                 CHECK(std::abs(sum - 1) < 1e-3f);
             }
         }
+    }
+}
+
+TEST_CASE("head expressions: with wrinkle channels, clips set the weights of each expression") {
+    for (const bool old : {false, true}) {
+        HeadShape shape = kShape;
+        shape.grows_old = old;
+        shape.wrinkle_channels = true;
+        const MeshData mesh = make_head(shape);
+        const MeshRig rig = make_head_rig(shape);
+        const auto channel_of = [&](const char* name) {
+            const auto found = std::ranges::find(mesh.morphs, name, &MorphTarget::name);
+            REQUIRE(found != mesh.morphs.end());
+            CHECK(found->vertices.empty());
+            return static_cast<std::size_t>(found - mesh.morphs.begin());
+        };
+        for (const ClipData& clip : rig.clips) {
+            CHECK(check_clip(clip, rig.skeleton.joints.size(), mesh.morphs.size()));
+        }
+        const auto weights_at = [&](const char* name, float time) {
+            const auto clip = std::ranges::find(rig.clips, name, &ClipData::name);
+            REQUIRE(clip != rig.clips.end());
+            std::vector<float> weights(mesh.morphs.size(), 0.0f);
+            sample_clip_weights(*clip, time, weights);
+            return weights;
+        };
+        const std::size_t chin = channel_of("wrinkle.chin");
+        const std::size_t brow = channel_of("wrinkle.left_brow");
+        CHECK(weights_at("surprise", 1)[chin] == -1);
+        CHECK(weights_at("surprise", 0.2f)[brow] == test::near(-0.5));
+        CHECK(weights_at("disgust", 1)[brow] == 1);
+        CHECK(weights_at("pucker", 1)[chin] == 1);
+        CHECK(weights_at("pucker", 1)[brow] == 0);
+        CHECK(weights_at("expressions", 0.6f + 2.4f + 1)[chin] == -1);  // surprise is the second
     }
 }
 

@@ -485,4 +485,39 @@ TEST_CASE("scene warnings: wrinkles whose material has no map of them") {
             fmt::format("entity \"gray\": {}", kText)});
 }
 
+TEST_CASE(
+    "scene warnings: a wrinkle map too steep for the fit to the unit sphere, and by how much"
+    * technique("wrinkle.compression.map")) {
+    World world;
+    Assets assets;
+    assets.meshes.emplace_back();
+    // x^2 + y^2 of 0.55, 0.7, 0 and 0.66: two are beyond 0.6.
+    assets.images.push_back(
+        {.name = "mine",
+         .width = 2,
+         .height = 2,
+         .pixels = {
+             222, 128, 200, 255, 234, 128, 200, 255, 128, 128, 255, 255, 201, 201, 200, 255}});
+    assets.materials.resize(1);
+    assets.materials[0].wrinkle_texture.image = ImageId{0};
+    world.insert_resource(std::move(assets));
+    const auto warnings_with = [&](WrinkleMethod method) {
+        const Entity skin = world.create(
+            Name{"skin"}, MeshInstance{MeshId{0}, MaterialId{0}}, WrinkleSurface{.method = method});
+        Warnings lines;
+        for (const SceneWarning& warning : find_scene_warnings(world)) {
+            lines.push_back(warning.text);
+        }
+        world.destroy(skin);
+        return lines;
+    };
+    CHECK(warnings_with(WrinkleMethod::Bump).empty());
+    CHECK(
+        warnings_with(WrinkleMethod::Sphere)
+        == Warnings{
+            "entity \"skin\": wrinkle map \"mine\": found 2 of 2 x 2 texels with x^2 + y^2 > 0.6, "
+            "which method sphere flattens by more than 8.76 degrees between its extremes; bump "
+            "draws them as steep as they are"});
+}
+
 }  // namespace limn::scene_warnings_test

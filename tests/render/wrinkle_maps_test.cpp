@@ -53,7 +53,9 @@ Vec4 normal_texel(int kind, int x, int y) {
 Vec4 mask_texel(int kind, int x, int y) {
     const float s = (static_cast<float>(x) + 0.5f) / kSide;
     const float t = (static_cast<float>(y) + 0.5f) / kSide;
-    return kind == 0 ? Vec4(s, 1 - s, t, 0.5f) : Vec4(0.25f, t * s, 0.75f * s, 1 - t);
+    return kind == 0   ? Vec4(s, 1 - s, t, 0.5f)
+           : kind == 1 ? Vec4(0.25f, t * s, 0.75f * s, 1 - t)
+                       : Vec4(0.6f * t, 0, 0, 0);
 }
 
 DVec3 decoded(const Vec4& texel) {
@@ -68,7 +70,7 @@ DVec3 add_normals(const DVec3& n, const DVec3& w) {
 DVec3 composed(const WrinkleWeights& weights, WrinkleBlend blend, int x, int y) {
     DVec2 influence = {0, 0};
     for (std::size_t i = 0; i < kWrinkleRegions.size(); ++i) {
-        const double mask = mask_texel(i < 4 ? 0 : 1, x, y)[static_cast<int>(i % 4)];
+        const double mask = mask_texel(static_cast<int>(i / 4), x, y)[static_cast<int>(i % 4)];
         const double weight = weights.*kWrinkleRegions[i];
         influence += mask * DVec2(std::max(-weight, 0.0), std::max(weight, 0.0));
     }
@@ -102,6 +104,7 @@ class WrinkledFace : public Scene {
         maps.compressed = normals(2);
         maps.first_masks = masks(0);
         maps.second_masks = masks(1);
+        maps.third_masks = masks(2);
         maps.target = add(painted([](int, int) { return Vec4(0, 0, 0, 1); }));
         Material material = {.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}};
         material.base_color_texture.image = maps.target;
@@ -145,7 +148,8 @@ constexpr WrinkleWeights kGrimace = {
     .left_cheek = 1,
     .right_cheek = -1,
     .upper_left_cheek = 0.35f,
-    .upper_right_cheek = -0.25f};
+    .upper_right_cheek = -0.25f,
+    .chin = 0.45f};
 
 WrinkleWeights scaled(const WrinkleWeights& weights, float factor) {
     WrinkleWeights result;
@@ -176,8 +180,9 @@ TEST_CASE_FIXTURE(
                 const int x = i % kSide;
                 const int y = i / kSide;
                 inputs.insert(
-                    inputs.end(), {mask_texel(0, x, y), mask_texel(1, x, y), halves(weights, 0),
-                                   halves(weights, 4)});
+                    inputs.end(),
+                    {mask_texel(0, x, y), mask_texel(1, x, y), halves(weights, 0),
+                     halves(weights, 4), Vec4(mask_texel(2, x, y).x, weights.chin, 0, 0)});
                 for (const int kind : {0, 1, 2}) {
                     inputs.emplace_back(Vec3(decoded(normal_texel(kind, x, y))), 0.0f);
                 }
@@ -186,16 +191,16 @@ TEST_CASE_FIXTURE(
                 blend == WrinkleBlend::Lerp ? "compose_by_lerp" : "compose_by_slopes";
             const std::vector<Vec4> found = evaluate_shader(
                 "#include \"lib/wrinkle_maps.glsl\"",
-                "uint k = i / 7u * 7u;\n"
-                "vec2 f = wrinkle_influence(inputs[k], inputs[k + 1u], inputs[k + 2u], "
-                "inputs[k + 3u]);\n"
+                "uint k = i / 8u * 8u;\n"
+                "vec2 f = wrinkle_influence(inputs[k], inputs[k + 1u], inputs[k + 4u].x, "
+                "inputs[k + 2u], inputs[k + 3u], inputs[k + 4u].y);\n"
                 "y.xyz = "
-                    + compose + "(inputs[k + 4u].xyz, inputs[k + 5u].xyz, inputs[k + 6u].xyz, f);",
+                    + compose + "(inputs[k + 5u].xyz, inputs[k + 6u].xyz, inputs[k + 7u].xyz, f);",
                 inputs);
             double largest = 0;
             for (int i = 0; i < kSide * kSide; ++i) {
                 const DVec3 expected = composed(weights, blend, i % kSide, i / kSide);
-                const DVec3 at = Vec3(found[7 * static_cast<std::size_t>(i)]);
+                const DVec3 at = Vec3(found[8 * static_cast<std::size_t>(i)]);
                 largest = std::max(largest, glm::length(at - expected));
             }
             CHECK(largest <= 1e-6);
@@ -257,6 +262,17 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: a preset is drawn as the weights that it stands for"
+                      * technique("wrinkle.maps.animation")) {
+    CHECK(
+        rendered({.preset = WrinklePreset::Sour}).pixels
+        == rendered({WrinklePreset::Neutral, 1, 1, 1, 1, 1, 1, 1, 1, 1}).pixels);
+    CHECK(
+        rendered({.preset = WrinklePreset::Surprised, .lips = 0.75f}).pixels
+        == rendered({WrinklePreset::Neutral, -1, -1, -1, -0.25f, -1, -1, -1, -1, -1}).pixels);
+}
+
+TEST_CASE_FIXTURE(
     WrinkledFace, "wrinkle maps: overlapping regions act at most as one with full weight"
                       * technique("wrinkle.maps.influence")) {
     // First masks are s and 1 - s: together 1 everywhere, with the lips' 0.5 beyond.
@@ -297,6 +313,33 @@ TEST_CASE_FIXTURE(
                       * technique("wrinkle.maps.masks")) {
     world.get<WrinkleMaps>(face).second_masks = {};
     CHECK(rendered({.lips = 0.4f, .left_cheek = 1}).pixels == rendered({.lips = 0.4f}).pixels);
+    CHECK(rendered({.chin = 1}).pixels != rendered({}).pixels);
+    world.get<WrinkleMaps>(face).third_masks = {};
+    CHECK(rendered({.chin = 1}).pixels == rendered({}).pixels);
+}
+
+TEST_CASE_FIXTURE(
+    WrinkledFace, "wrinkle maps: a weight changes no pixel outside its mask, whatever the others"
+                      * technique("wrinkle.maps.masks")) {
+    // A chin in the lower half of its mask.
+    world.get<WrinkleMaps>(face).third_masks =
+        add(painted([](int, int y) { return Vec4(y >= kSide / 2 ? 1 : 0, 0, 0, 0); }));
+    const WrinkleWeights others = {.left_brow = 0.3f, .lips = -0.4f, .upper_left_cheek = 0.2f};
+    for (const float chin : {-1.0f, 0.2f, 1.0f}) {
+        WrinkleWeights changed = others;
+        changed.chin = chin;
+        const gpu::FloatImage without = rendered(others);
+        const gpu::FloatImage with = rendered(changed);
+        int different = 0;
+        for (int y = 0; y < kSide; ++y) {
+            for (int x = 0; x < kSide; ++x) {
+                const bool same = normal(with, x, y) == normal(without, x, y);
+                different += same ? 0 : 1;
+                CHECK((same || y >= kSide / 2));
+            }
+        }
+        CHECK(different == kSide * kSide / 2);
+    }
 }
 
 TEST_CASE_FIXTURE(
@@ -333,9 +376,9 @@ TEST_CASE_FIXTURE(
             .height = height,
             .pixels = std::vector<std::uint8_t>(4 * texels, 128)});
     };
-    ImageId WrinkleMaps::*const all[] = {
-        &WrinkleMaps::base, &WrinkleMaps::stretched, &WrinkleMaps::compressed,
-        &WrinkleMaps::first_masks, &WrinkleMaps::second_masks};
+    ImageId WrinkleMaps::*const all[] = {&WrinkleMaps::base,         &WrinkleMaps::stretched,
+                                         &WrinkleMaps::compressed,   &WrinkleMaps::first_masks,
+                                         &WrinkleMaps::second_masks, &WrinkleMaps::third_masks};
     const ImageData& target = world.resource<Assets>().images[good.target.index];
     const int width = target.width;
     const int height = target.height;
@@ -360,7 +403,7 @@ TEST_CASE_FIXTURE(
     };
     const auto mask = add(painted([](int, int) { return Vec4(1, 0, 0, 0); }));
     const auto shown = [&](const Vec3& n, const Vec3& w1, const Vec3& w2, float weight) {
-        world.get<WrinkleMaps>(face) = {flat(n), flat(w1), flat(w2), mask, {}, maps.target};
+        world.get<WrinkleMaps>(face) = {flat(n), flat(w1), flat(w2), mask, {}, {}, maps.target};
         return normal(rendered({.left_brow = weight}), 3, 3);
     };
     const Vec3 up = {0, 0, 1};

@@ -210,26 +210,46 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     WrinkleScene,
-    "wrinkle pass: shading darkens slopes, whatever the light"
+    "wrinkle pass: shading darkens the lit pixel, highlights and all, whatever the light"
         * technique("wrinkle.compression.alpha-directional, wrinkle.compression.alpha-shading")) {
+    // Glossy skin in white light and the light of a sky: of its color alone, little would be left.
+    material.base_color = {0.05f, 0.04f, 0.03f, 1};
+    material.roughness = 0.4f;
+    world.insert_resource(Environment{.sky = SkyKind::Gradient, .intensity = 0.4f});
     const float intensity = wrinkle_intensity(0.64f, 1, 4);
-    const auto darkening = [&](WrinkleMethod method, bool upside_down) {
-        material.wrinkle_texture.image = upside_down ? add(ImageData{
-                                             .name = "down",
-                                             .width = 1,
-                                             .height = 1,
-                                             .pixels = {128, 256 - kSlopeByte, 240, 255}})
-                                                     : slope_map();
-        const Entity entity = square({.method = method, .lambda = 1}, 0.2f);
-        const gpu::FloatImage albedo = aov(view, "albedo");
-        world.destroy(entity);
-        return rgb_at(albedo, 16, 16).x / 0.5f;
-    };
     const float full = 1 - intensity * -map_slope().y;
-    CHECK(darkening(WrinkleMethod::Alpha, false) == near(full).epsilon(4e-3));
-    CHECK(darkening(WrinkleMethod::Alpha, true) == near(full).epsilon(4e-3));
-    CHECK(darkening(WrinkleMethod::Directional, true) == near(full).epsilon(4e-3));
-    CHECK(darkening(WrinkleMethod::Directional, false) == near(1).epsilon(4e-3));
+    for (const ShadingModel model : {ShadingModel::Pbr, ShadingModel::Blinn, ShadingModel::Skin}) {
+        material.shading = model;
+        for (const Vec3& light : {Vec3(0, 0.2f, 1), Vec3(1, -1, 1)}) {
+            const Entity lamp = shine(DirectionalLight{}, look_at(light, {0, 0, 0}));
+            const auto darkening = [&](WrinkleMethod method, bool upside_down) {
+                material.wrinkle_texture.image = upside_down ? add(ImageData{
+                                                     .name = "down",
+                                                     .width = 1,
+                                                     .height = 1,
+                                                     .pixels = {128, 256 - kSlopeByte, 240, 255}})
+                                                             : slope_map();
+                const auto lit = [&](WrinkleMethod drawn) {
+                    const Entity entity = square({.method = drawn, .lambda = 1}, 0.2f);
+                    const Vec3 pixel = rgb_at(radiance(view), 16, 16);
+                    world.destroy(entity);
+                    return pixel;
+                };
+                const Vec3 ratio = lit(method) / lit(WrinkleMethod::None);
+                CHECK(ratio.x == near(ratio.z).epsilon(4e-3));
+                return ratio.y;
+            };
+            CHECK(darkening(WrinkleMethod::Alpha, false) == near(full).epsilon(4e-3));
+            CHECK(darkening(WrinkleMethod::Alpha, true) == near(full).epsilon(4e-3));
+            CHECK(darkening(WrinkleMethod::Directional, true) == near(full).epsilon(4e-3));
+            CHECK(darkening(WrinkleMethod::Directional, false) == near(1).epsilon(4e-3));
+            world.destroy(lamp);
+        }
+    }
+    // Skin that emits light has no room for it: its color is darkened.
+    material.emission = {0.2f, 0.1f, 0};
+    square({.method = WrinkleMethod::Alpha, .lambda = 1}, 0.2f);
+    CHECK(rgb_at(aov(view, "albedo"), 16, 16).x / 0.05f == near(full).epsilon(2e-2));
 }
 
 TEST_CASE_FIXTURE(
@@ -394,10 +414,14 @@ TEST_CASE_FIXTURE(
         smaller.positions.push_back(mesh.positions[v] * Vec3{-1, -1, 0});
     }
     material.wrinkle_texture.image = add(layered_map());
-    skin(mesh, {.method = WrinkleMethod::Alpha, .second_turned = true, .lambda = 1}, 0.2f);
+    const Entity face =
+        skin(mesh, {.method = WrinkleMethod::Alpha, .second_turned = true, .lambda = 1}, 0.2f);
     const float dark =
         1 - wrinkle_intensity(0.64f, 1, 4) * 60 / std::sqrt(127.0f * 127.0f - 60.0f * 60.0f);
-    CHECK(rgb_at(aov(view, "albedo"), 16, 16).x / 0.5f == near(dark * dark).epsilon(6e-3));
+    shine(DirectionalLight{}, look_at({0, 1, 2}, {0, 0, 0}));
+    const float shaded = rgb_at(radiance(view), 16, 16).x;
+    world.get<WrinkleSurface>(face).method = WrinkleMethod::None;
+    CHECK(shaded / rgb_at(radiance(view), 16, 16).x == near(dark * dark).epsilon(6e-3));
 }
 
 TEST_CASE_FIXTURE(

@@ -173,6 +173,34 @@ TEST_CASE("wrinkle response: without gains weights are those of the animator, pl
     CHECK(found.left_cheek == 1);
 }
 
+TEST_CASE(
+    "wrinkle response: a region of its own differs in gains, bias and smoothing, the others do not"
+    * technique("skin.pipeline")) {
+    const WrinkleResponse plain = {.smoothing = 0, .lambda = 1, .beta = 4};
+    WrinkleResponse own = plain;
+    own.regions = {
+        {.region = WrinkleRegion::RightBrow, .compressed_gain = 0.5f, .bias = 0.125f},
+        {.region = WrinkleRegion::Chin, .bias = -0.25f}};
+    const auto pressed = [](const Vec3& p) { return scaled(p, 1, 0.8f); };
+    const WrinkleWeights same = Face(plain).weights(pressed);
+    const WrinkleWeights found = Face(own).weights(pressed);
+    CHECK(found.left_brow == same.left_brow);
+    CHECK(found.right_brow == near(0.5 * 0.712663 + 0.125).epsilon(1e-5));
+    CHECK(found.chin == -0.25f);
+}
+
+TEST_CASE("wrinkle response: faces too far away to show wrinkles are not measured") {
+    Face face;
+    face.world.add(face.entity, MorphWeights{});
+    face.world.add(face.entity, WrinkleRungs{.displaced = 0, .strain = 0, .maps = 0});
+    face.world.get<MeasuredWrinkles>(face.entity).weights.left_brow = 0.5f;
+    face.world.run(update_wrinkle_responses);
+    CHECK(face.world.get<MeasuredWrinkles>(face.entity).weights.left_brow == 0.5f);
+    face.world.get<WrinkleRungs>(face.entity).maps = 0.1f;
+    face.world.run(update_wrinkle_responses);
+    CHECK(face.world.get<MeasuredWrinkles>(face.entity).weights.left_brow == 0);
+}
+
 TEST_CASE("wrinkle response: positions that are not finite count as at rest") {
     Face face;
     const float nan = std::numeric_limits<float>::quiet_NaN();

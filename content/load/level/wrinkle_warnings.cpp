@@ -2,6 +2,7 @@
 
 #include "ecs/components/surface.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_limit.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/world.h"
 
@@ -81,11 +82,27 @@ struct WrinkleCheck {
             return;
         }
         const std::uint32_t material = instance.material.index;
-        if (material < assets.materials.size()
-            && assets.materials[material].wrinkle_texture.image.index < assets.images.size()) {
-            return;
+        const std::uint32_t map = material < assets.materials.size()
+                                      ? assets.materials[material].wrinkle_texture.image.index
+                                      : kNoAsset;
+        if (map >= assets.images.size()) {
+            warn(entity, "wrinkle_surface draws nothing unless its material has a wrinkle_texture");
+        } else if (surface.method == WrinkleMethod::Sphere) {
+            check_slopes(entity, assets.images[map]);
         }
-        warn(entity, "wrinkle_surface draws nothing unless its material has a wrinkle_texture");
+    }
+
+    /// Normals too steep for the fit to the unit sphere (wrinkle.compression.map).
+    void check_slopes(Entity entity, const ImageData& map) {
+        const std::size_t steep = count_steep_texels(map);
+        if (steep > 0) {
+            warn(
+                entity, fmt::format(
+                            "wrinkle map \"{}\": found {} of {} x {} texels with x^2 + y^2 > {}, "
+                            "which method sphere flattens by more than 8.76 degrees between its "
+                            "extremes; bump draws them as steep as they are",
+                            map.name, steep, map.width, map.height, kSteepestWrinkle));
+        }
     }
 
     /// Images of a face that do not align with each other.
@@ -96,11 +113,9 @@ struct WrinkleCheck {
             };
             const ImageData* const base = find(maps.base);
             const std::pair<const char*, ImageId> fields[] = {
-                {"stretched", maps.stretched},
-                {"compressed", maps.compressed},
-                {"first_masks", maps.first_masks},
-                {"second_masks", maps.second_masks},
-                {"target", maps.target}};
+                {"stretched", maps.stretched},     {"compressed", maps.compressed},
+                {"first_masks", maps.first_masks}, {"second_masks", maps.second_masks},
+                {"third_masks", maps.third_masks}, {"target", maps.target}};
             for (const auto& [field, id] : fields) {
                 const ImageData* const image = find(id);
                 if (base != nullptr && image != nullptr && !have_one_aspect(*image, *base)) {

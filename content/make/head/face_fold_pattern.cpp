@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <vector>
 
 // Techniques: wrinkle.dimples
@@ -72,6 +74,14 @@ constexpr Crease kCreases[] = {
     {{4.6f, 52.5f}, {5.1f, 54.0f}, {5.4f, 55.4f}, 0.8f, 0.055f},
     {{0, 55.2f}, {3.4f, 55.4f}, {6.6f, 53.6f}, 1.2f, 0.06f},
 };
+
+constexpr std::size_t kForehead = 7;      ///< of the creases, which come first
+constexpr std::size_t kBesideMouth = 23;  ///< index of the crease outside the corner of the mouth
+
+bool has_crease(FaceFoldSet set, std::size_t crease) {
+    return set == FaceFoldSet::All
+           || (set == FaceFoldSet::Stretched) == (crease < kForehead || crease == kBesideMouth);
+}
 
 /// Nasolabial fold and marionette line: the cheek hangs over them.
 constexpr Crease kOverhangs[] = {
@@ -198,18 +208,23 @@ PatternMaps make_face_folds(const FaceFoldsPattern& pattern) {
         p.x = mirrored(p.x);
         float height = 0;
         std::uint32_t number = seed + 6;
-        for (const Crease& crease : kCreases) {
-            const float own = crease_height(crease, p);
+        for (std::size_t i = 0; i < std::size(kCreases); ++i) {
+            const bool has = has_crease(pattern.folds, i);
+            const float own = has ? crease_height(kCreases[i], p) : 0.0f;
             height += own != 0 ? own * crease_pieces(uv, number) : 0.0f;
             ++number;
         }
         for (const Crease& crease : kOverhangs) {
-            height += overhang_height(crease, p);
+            height += pattern.folds != FaceFoldSet::Stretched ? overhang_height(crease, p) : 0.0f;
         }
         // The depth of a fold varies along it, and between both sides of the face.
         height *= height != 0 ? 1 + 0.9f * fbm(uv, 13, seed + 5, 2) : 1;
         const float chin =
-            1 - glm::smoothstep(0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));
+            pattern.folds == FaceFoldSet::Stretched
+                ? 0.0f
+                : 1
+                      - glm::smoothstep(
+                          0.4f, 1.0f, glm::length((p - Vec2(0, 59)) / Vec2(6.5f, 3.8f)));
         height += chin > 0 ? chin * 0.16f * dimple_height(chart, seed + 2) : 0.0f;
         PatternTexel t;
         t.height = pattern.depth * height / kHeadColumns;

@@ -15,6 +15,7 @@
 #include "content/make/head/head_wrap.h"
 #include "content/make/models/keep_triangles.h"
 #include "ecs/base/check.h"
+#include "ecs/components/wrinkle_maps.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -351,6 +352,11 @@ MeshData make_head(const HeadShape& requested) {
     if (shape.grows_old) {
         mesh.morphs.push_back(make_aging(mesh.positions, shape));
     }
+    if (shape.wrinkle_channels) {
+        for (const char* const channel : kWrinkleChannels) {
+            mesh.morphs.emplace_back().name = channel;
+        }
+    }
     generate_morph_normals(mesh);
     generate_tangents(mesh);
     generate_morph_tangents(mesh);
@@ -384,7 +390,7 @@ MeshRig make_head_rig(const HeadShape& requested) {
             affine_from(-kMeters * joints[i], Quat(1, 0, 0, 0), Vec3(1)));
     }
     if (shape.part == HeadPartKind::Skin) {
-        rig.clips = make_head_clips(shape.says, shape.grows_old);
+        rig.clips = make_head_clips(shape);
     }
     return rig;
 }

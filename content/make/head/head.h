@@ -52,6 +52,7 @@ struct HeadShape {
     bool shoulders = false;
     bool dressed = false;
     bool grows_old = false;
+    bool wrinkle_channels = false;
     std::string says = "Hello. I am made of numbers, and light moves within my skin.";
 };
 
@@ -74,6 +75,9 @@ LIMN_FIELDS(HeadShape) {
     LIMN_FIELD(
         grows_old, "adds the shape `age`, which at weight 1 makes it seventy years old; set it on "
                    "all parts of a head");
+    LIMN_FIELD(
+        wrinkle_channels,
+        "the skin has channels of wrinkle_weights, which its clips set with each expression");
     LIMN_FIELD(says, "English text that it says in its clip `talk`");
 }
 

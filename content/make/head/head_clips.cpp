@@ -6,6 +6,7 @@
 #include "content/speech/head_motion.h"
 #include "content/speech/utterance.h"
 #include "ecs/base/math.h"
+#include "ecs/components/wrinkle_maps.h"
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -24,14 +25,23 @@ namespace {
 struct Face {
     std::string_view name;
     std::array<UnitWeight, 7> units;  ///< sided units without a suffix: both halves
+    WrinkleWeights wrinkles = {};     ///< of wrinkle maps
 };
 
 constexpr Face kFaces[] = {
-    {"smile", {{{"AU6", 0.8f}, {"AU12", 0.9f}, {"AU25", 0.8f}}}},
-    {"surprise", {{{"AU1", 1}, {"AU2", 1}, {"AU5", 0.8f}, {"AU26", 1}, {"AU25", 0.3f}}}},
-    {"frown", {{{"AU4", 1}, {"AU7", 0.7f}, {"AU23", 0.6f}, {"AU24", 0.4f}, {"AU17", 0.3f}}}},
-    {"sadness", {{{"AU1", 0.9f}, {"AU4", 0.5f}, {"AU15", 0.9f}, {"AU17", 0.5f}, {"AU41", 0.4f}}}},
-    {"disgust", {{{"AU9", 1}, {"AU10", 0.5f}, {"AU15", 0.4f}, {"AU7", 0.5f}, {"AU25", 0.3f}}}},
+    {"smile", {{{"AU6", 0.8f}, {"AU12", 0.9f}, {"AU25", 0.8f}}}, {.preset = WrinklePreset::Smile}},
+    {"surprise",
+     {{{"AU1", 1}, {"AU2", 1}, {"AU5", 0.8f}, {"AU26", 1}, {"AU25", 0.3f}}},
+     {.preset = WrinklePreset::Surprised}},
+    {"frown",
+     {{{"AU4", 1}, {"AU7", 0.7f}, {"AU23", 0.6f}, {"AU24", 0.4f}, {"AU17", 0.3f}}},
+     {.preset = WrinklePreset::Frown, .chin = 0.3f}},
+    {"sadness",
+     {{{"AU1", 0.9f}, {"AU4", 0.5f}, {"AU15", 0.9f}, {"AU17", 0.5f}, {"AU41", 0.4f}}},
+     {.left_brow = -0.5f, .right_brow = -0.5f, .middle_brow = 0.5f, .chin = 0.6f}},
+    {"disgust",
+     {{{"AU9", 1}, {"AU10", 0.5f}, {"AU15", 0.4f}, {"AU7", 0.5f}, {"AU25", 0.3f}}},
+     {.preset = WrinklePreset::Sour}},
     {"fear",
      {{{"AU1", 0.9f},
        {"AU2", 0.6f},
@@ -39,13 +49,19 @@ constexpr Face kFaces[] = {
        {"AU5", 0.9f},
        {"AU20", 0.8f},
        {"AU26", 0.4f},
-       {"AU25", 0.5f}}}},
-    {"pucker", {{{"AU18", 1}}}},
+       {"AU25", 0.5f}}},
+     {.left_brow = -0.8f, .right_brow = -0.8f, .middle_brow = -0.4f, .lips = -0.5f}},
+    {"pucker", {{{"AU18", 1}}}, {.preset = WrinklePreset::Pout}},
     {"puff", {{{"AU34", 1}, {"AU24", 0.3f}}}},
     {"wink",
-     {{{"AU46_L", 1}, {"AU6_L", 0.4f}, {"AU12_L", 0.7f}, {"AU12_R", 0.35f}, {"AU2_R", 0.3f}}}},
-    {"doubt", {{{"AU2_L", 1}, {"AU1_L", 0.4f}, {"AU4_R", 0.7f}, {"AU14_R", 0.6f}, {"AU17", 0.4f}}}},
-    {"gape", {{{"AU27", 0.9f}, {"AU25", 0.3f}, {"AU2", 0.3f}}}},
+     {{{"AU46_L", 1}, {"AU6_L", 0.4f}, {"AU12_L", 0.7f}, {"AU12_R", 0.35f}, {"AU2_R", 0.3f}}},
+     {.left_cheek = 0.7f, .right_cheek = 0.3f, .upper_left_cheek = 1}},
+    {"doubt",
+     {{{"AU2_L", 1}, {"AU1_L", 0.4f}, {"AU4_R", 0.7f}, {"AU14_R", 0.6f}, {"AU17", 0.4f}}},
+     {.left_brow = -1, .right_brow = 0.7f, .chin = 0.5f}},
+    {"gape",
+     {{{"AU27", 0.9f}, {"AU25", 0.3f}, {"AU2", 0.3f}}},
+     {.lips = -1, .left_cheek = -0.6f, .right_cheek = -0.6f, .chin = -1}},
 };
 
 constexpr float kFaceTime = 2.4f;  ///< duration of one expression, from rest to rest [s]
@@ -67,8 +83,13 @@ void add_curve(
     clip.sheets.push_back(std::move(sheet));
 }
 
+/// Index of the first wrinkle channel.
+std::uint16_t first_channel(const HeadShape& shape) {
+    return static_cast<std::uint16_t>(expression_count() + (shape.grows_old ? 1 : 0));
+}
+
 /// Weights by morph target.
-std::vector<std::pair<std::uint16_t, float>> targets_of(const Face& face) {
+std::vector<std::pair<std::uint16_t, float>> targets_of(const Face& face, const HeadShape& shape) {
     std::vector<std::pair<std::uint16_t, float>> targets;
     for (const UnitWeight& part : face.units) {
         if (part.weight == 0) {
@@ -85,13 +106,19 @@ std::vector<std::pair<std::uint16_t, float>> targets_of(const Face& face) {
             targets.emplace_back(expression_index(name), part.weight);
         }
     }
+    if (shape.wrinkle_channels) {
+        std::uint16_t channel = first_channel(shape);
+        for (const float weight : region_weights(face.wrinkles)) {
+            targets.emplace_back(channel++, weight);
+        }
+    }
     return targets;
 }
 
-ClipData make_face_clip(const Face& face) {
+ClipData make_face_clip(const Face& face, const HeadShape& shape) {
     ClipData clip;
     clip.name = face.name;
-    for (const auto& target : targets_of(face)) {
+    for (const auto& target : targets_of(face, shape)) {
         std::vector<float> times;
         std::vector<float> weights;
         for (const Key& key : kRise) {
@@ -114,13 +141,13 @@ void add_gaze(ClipSheet& sheet, float time, const Vec2& look) {
     }
 }
 
-ClipData make_all_faces() {
+ClipData make_all_faces(const HeadShape& shape) {
     ClipData clip;
     clip.name = "expressions";
     std::vector<std::vector<Vec2>> curves;  // of each target: times and weights
     float start = 0.6f;
     for (const Face& face : kFaces) {
-        for (const auto& target : targets_of(face)) {
+        for (const auto& target : targets_of(face, shape)) {
             curves.resize(std::max(curves.size(), std::size_t{target.first} + 1));
             for (const Key& key : kRise) {
                 curves[target.first].emplace_back(start + key.time, key.weight * target.second);
@@ -233,16 +260,16 @@ ClipData make_relax(const ClipData& talk) {
 
 }  // namespace
 
-std::vector<ClipData> make_head_clips(std::string_view says, bool grows_old) {
+std::vector<ClipData> make_head_clips(const HeadShape& shape) {
     std::vector<ClipData> clips;
     for (const Face& face : kFaces) {
-        clips.push_back(make_face_clip(face));
+        clips.push_back(make_face_clip(face, shape));
     }
-    clips.push_back(make_all_faces());
-    clips.push_back(make_talk(says));
+    clips.push_back(make_all_faces(shape));
+    clips.push_back(make_talk(shape.says));
     clips.push_back(make_relax(clips.back()));
     clips.push_back(make_blink());
-    if (grows_old) {
+    if (shape.grows_old) {
         ClipData& old = clips.emplace_back();
         old.name = "old";
         add_curve(old, expression_count(), {0, 1}, {1, 1});

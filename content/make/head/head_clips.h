@@ -1,8 +1,8 @@
 #pragma once
 
+#include "content/make/head/head.h"
 #include "ecs/components/skeleton.h"
 
-#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -14,7 +14,8 @@ namespace limn {
 /// "puff", "wink", "doubt" and "gape", each from rest to rest; "expressions", all of them with a
 /// wandering gaze; "talk", which says the English text `says` by the rules of content/speech, with
 /// blinks, gaze and nods; "relax", the same with brows that rise and relax; "blink"; and, for a
-/// head that grows old, "old", a morph animation whose weight is its age.
-[[nodiscard]] std::vector<ClipData> make_head_clips(std::string_view says, bool grows_old);
+/// head that grows old, "old", a morph animation whose weight is its age. With wrinkle channels,
+/// expressions set weights of wrinkle maps as well.
+[[nodiscard]] std::vector<ClipData> make_head_clips(const HeadShape& shape);
 
 }  // namespace limn

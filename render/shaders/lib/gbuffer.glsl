@@ -12,6 +12,8 @@
 //
 //     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9,  fades 1
 //
+// An x of 0 says that no smooth normal is needed; y is then the factor of the light (SHADED_SKIN).
+//
 // A weight of 0 is that of folds that light bounces in; 1 and 2 stand for SurfaceSample::bump_shadow, and there for the
 // weight 1. So do other surfaces whose bumps are not lit from behind the mesh: their smooth normal is that of the mesh,
 // and the shading model has its highest bit set. Hair and Strand emit nothing: w is
@@ -27,11 +29,14 @@
 #include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"
 
-#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE) || defined(WRINKLE_BOUNCE) || defined(BUMP_GATE) || defined(BUMP_SMOOTH) || defined(BUMP_RAMP)) && !defined(SMOOTH_NORMALS)
+#if (defined(WRINKLE_BLEND) || defined(WRINKLE_FADE) || defined(WRINKLE_BOUNCE) || defined(WRINKLE_SHADE) || defined(BUMP_GATE) || defined(BUMP_SMOOTH) || defined(BUMP_RAMP)) && !defined(SMOOTH_NORMALS)
 #define SMOOTH_NORMALS
 #endif
 #if defined(WRINKLE_BLEND) && !defined(BLENDED_SKIN)
 #define BLENDED_SKIN
+#endif
+#if defined(WRINKLE_SHADE) && !defined(SHADED_SKIN)
+#define SHADED_SKIN
 #endif
 #if defined(WRINKLE_BOUNCE) && !defined(FOLD_LIGHT)
 #define FOLD_LIGHT
@@ -81,6 +86,7 @@ struct SurfaceSample {
     vec3 smooth_normal_ws;  // unit, of skin without its wrinkles
     float raised;           // weight of lighting by normal_ws; the rest is by smooth_normal_ws
     bool bounces;           // light bounces within the folds, whose normal is normal_ws; raised is 1
+    float shade;            // factor of all light that it reflects; below 1 only if no smooth normal is needed
     bool fades;             // light at grazing angles to smooth_normal_ws fades
     uint bump_shadow;       // kBump*: how light from behind smooth_normal_ws is left out; 0: it is not
     bool smooth_is_stored;  // otherwise raised is 1
@@ -106,6 +112,7 @@ void set_plain(inout SurfaceSample s) {
     s.smooth_normal_ws = s.normal_ws;
     s.raised = 1.0;
     s.bounces = false;
+    s.shade = 1.0;
     s.fades = false;
     s.bump_shadow = 0u;
     s.smooth_is_stored = false;
@@ -157,6 +164,7 @@ const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, 
 #ifdef SMOOTH_NORMALS
 uint pack_smooth_normal(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.smooth_normal_ws) * 1023.0 + 1024.5, 1.0, 2047.0));
+    n = s.shade < 1.0 ? uvec2(0u, uint(clamp(s.shade, 0.0, 1.0) * 2047.0 + 0.5)) : n;
     uint raised = s.bounces ? 0u : max(uint(clamp(s.raised, 0.0, 1.0) * 511.0 + 0.5), kBumpSmoothed + 1u);
     raised = s.bump_shadow > 0u ? s.bump_shadow : raised;
     return n.x | n.y << 11 | raised << 22 | (s.fades ? 1u : 0u) << 31;
@@ -164,6 +172,9 @@ uint pack_smooth_normal(SurfaceSample s) {
 
 void unpack_smooth_normal(inout SurfaceSample s, uint bits) {
     s.smooth_normal_ws = octahedral_decode((vec2(bits & 2047u, bits >> 11 & 2047u) - 1024.0) / 1023.0);
+    bool shaded = s.smooth_is_stored && (bits & 2047u) == 0u;
+    s.smooth_normal_ws = shaded ? s.normal_ws : s.smooth_normal_ws;
+    s.shade = shaded ? float(bits >> 11 & 2047u) / 2047.0 : 1.0;
     uint raised = bits >> 22 & 511u;
     s.bounces = s.smooth_is_stored && raised == 0u;
     s.raised = s.smooth_is_stored && raised > kBumpSmoothed ? float(raised) / 511.0 : 1.0;

@@ -369,6 +369,15 @@ Reflected blend_skin(SurfaceSample s, Reflected wrinkled, Reflected smooth_light
 }
 #endif
 
+// Darkens lit skin by its wrinkles (wrinkle.compression.alpha-shading).
+Reflected shade_skin(SurfaceSample s, Reflected light) {
+#ifdef SHADED_SKIN
+    return Reflected(s.shade * light.diffuse, s.shade * light.specular);
+#else
+    return light;
+#endif
+}
+
 // Light of lights and the environment, by the normal of `s` only.
 Reflected reflect_by_normal(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
@@ -386,7 +395,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list)
         light = blend_skin(s, light, reflect_by_normal(smooth_skin(s), position_ws, pixel, list));
     }
 #endif
-    return light;
+    return shade_skin(s, light);
 }
 
 // The environment's part of reflect_all().
@@ -396,7 +405,7 @@ Reflected reflect_around(SurfaceSample s, vec3 position_ws) {
     SurfaceSample skin = smooth_skin(s);
     light = blend_skin(s, light, reflect_surroundings(make_reflector(skin, to_viewer(position_ws)), skin, position_ws));
 #endif
-    return light;
+    return shade_skin(s, light);
 }
 
 // The light list of the cell of a pixel at a distance along the view axis.

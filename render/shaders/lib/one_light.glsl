@@ -23,5 +23,6 @@ vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
 #ifdef BLENDED_SKIN
     reflected = blend_skin(s, reflected, reflect_one_by_normal(smooth_skin(s), position_ws, pixel));
 #endif
+    reflected = shade_skin(s, reflected);
     return reflected.diffuse + reflected.specular;
 }

@@ -9,9 +9,12 @@ vec3 add_normals(vec3 n, vec3 w) {
 }
 
 // Influence of the stretched and the compressed map, 0 .. 1: overlapping regions add up.
-vec2 wrinkle_influence(vec4 first_mask, vec4 second_mask, vec4 first_weights, vec4 second_weights) {
-    float stretched = dot(first_mask, max(-first_weights, 0.0)) + dot(second_mask, max(-second_weights, 0.0));
-    float compressed = dot(first_mask, max(first_weights, 0.0)) + dot(second_mask, max(second_weights, 0.0));
+vec2 wrinkle_influence(
+    vec4 first_mask, vec4 second_mask, float third_mask, vec4 first_weights, vec4 second_weights, float third_weight) {
+    float stretched = dot(first_mask, max(-first_weights, 0.0)) + dot(second_mask, max(-second_weights, 0.0))
+        + third_mask * max(-third_weight, 0.0);
+    float compressed = dot(first_mask, max(first_weights, 0.0)) + dot(second_mask, max(second_weights, 0.0))
+        + third_mask * max(third_weight, 0.0);
     return min(vec2(stretched, compressed), 1.0);
 }
 

@@ -2,6 +2,7 @@
 //   WRINKLE_MAP    the texture unit of the map of wrinkles
 //   WRINKLE_BLEND  lighting of full wrinkles and of smooth skin is blended
 //   WRINKLE_FADE   light at grazing angles to smooth skin fades
+//   WRINKLE_SHADE  lit slopes are darkened
 //   WRINKLE_BOUNCE  light bounces within isometric folds (lib/fold_light.glsl)
 //   WRINKLE_VIEW   instead of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and
 //                  w 1 where that frame is known
@@ -136,20 +137,32 @@ vec3 strain_view() {
 }
 #endif
 
-void wrinkle_color(inout vec4 color) {
-#if defined(WRINKLES) && defined(WRINKLE_LAYERS) && !defined(WRINKLE_MODEL)
+#ifdef WRINKLES
+// How much slopes darken the light of a pixel (wrinkle.compression.alpha-shading).
+float slope_shade() {
+#if defined(WRINKLE_MODEL) || defined(WRINKLE_PHOTO)
+    return 1.0;
+#elif defined(WRINKLE_LAYERS)
     vec4 slopes = wrinkle_slopes_here();
-    color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0);
-    color.rgb *= 1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0);
-#elif defined(WRINKLES) && defined(WRINKLE_COLUMNS)
+    return (1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slopes.xy, false), 0.0, 1.0))
+        * (1.0 - clamp(wrinkle_strength.w * wrinkle_shade(slopes.zw, false), 0.0, 1.0));
+#elif defined(WRINKLE_COLUMNS)
     uint method = column_method();
-    vec4 strength = column_strength(method);
-    vec2 slope = wrinkle_slope_here();
-    color.rgb *= method == kWrinklePhoto ? painted_slope(slope, strength.z) : shaded_slope(slope, strength);
+    return method == kWrinklePhoto ? 1.0 : shaded_slope(wrinkle_slope_here(), column_strength(method));
+#else
+    return shaded_slope(wrinkle_slope_here(), wrinkle_strength);
+#endif
+}
+#endif
+
+void wrinkle_color(inout vec4 color) {
+#if defined(WRINKLES) && defined(WRINKLE_COLUMNS)
+    uint method = column_method();
+    if (method == kWrinklePhoto) {
+        color.rgb *= painted_slope(wrinkle_slope_here(), column_strength(method).z);
+    }
 #elif defined(WRINKLES) && defined(WRINKLE_PHOTO)
     color.rgb *= painted_slope(wrinkle_slope_here(), wrinkle_strength.z);
-#elif defined(WRINKLES) && !defined(WRINKLE_MODEL)
-    color.rgb *= shaded_slope(wrinkle_slope_here(), wrinkle_strength);
 #endif
 }
 
@@ -204,6 +217,18 @@ void wrinkle_sample(inout SurfaceSample s, vec3 smooth_normal) {
 #ifdef WRINKLE_FADE
     s.fades = true;
     s.smooth_is_stored = stores;
+#endif
+#ifdef WRINKLE_SHADE
+    // The word of the emission has room for it unless skin emits or needs its smooth normal: then its color is darkened.
+    float shade = slope_shade();
+    bool needs_smooth = s.smooth_is_stored && s.raised < 1.0 || s.bounces || s.bump_shadow > 0u || (s.fades && s.normal_ws != smooth_normal);
+    if (stores && !needs_smooth && s.emission == vec3(0.0)) {
+        s.shade = shade;
+        s.raised = 1.0;
+        s.smooth_is_stored = s.smooth_is_stored || shade < 1.0;
+    } else {
+        s.albedo *= shade;
+    }
 #endif
 #endif
 }
