@@ -41,10 +41,17 @@ const FoldingRule kRules[] = {
      {"AU15"},
      {"marionette"},
      {"forehead", "glabella", "nose_root", "nose_side", "crows_feet", "lower_lid", "upper_lip"}},
+    // Mentalis lifts the pad of the chin against the lower lip: the furrow between them and the
+    // skin below the corners shorten first, in a direction; the pad itself dimples, in none.
     {"chin raise",
      {"AU17"},
-     {"chin"},
+     {"mentolabial", "marionette", "chin"},
      {"forehead", "glabella", "nose_root", "nose_side", "crows_feet", "nasolabial", "upper_lip"}},
+    {"chin dimples",
+     {"AU17"},
+     {"chin"},
+     {"forehead", "glabella", "nose_root", "nose_side", "crows_feet", "nasolabial", "upper_lip"},
+     true},
 };
 
 /// "AU12" of "AU12_L".

@@ -56,7 +56,8 @@ std::size_t count_units(const MeshData& mesh) {
 
 }  // namespace
 
-Status measure_face(std::string_view name, const MeshData& face, QualityReport& report) {
+Status
+measure_face(std::string_view name, const MeshData& face, QualityReport& report, bool has_dimples) {
     const bool directed = std::ranges::any_of(
         face.regions, [](const VertexRegion& region) { return !region.across.empty(); });
     if (!directed || face.morphs.empty()) {
@@ -83,9 +84,14 @@ Status measure_face(std::string_view name, const MeshData& face, QualityReport& 
         report.inform(
             fmt::format("{}: {}, shortening of {}", name, rule.name, regions), 100 * result.folding,
             "%");
-        report.at_least(
-            fmt::format("{}: {}, that by the most of smooth skin", name, rule.name),
-            result.folding / std::max(result.smooth, 1e-4), kContrast);
+        const std::string contrast =
+            fmt::format("{}: {}, that by the most of smooth skin", name, rule.name);
+        const double ratio = result.folding / std::max(result.smooth, 1e-4);
+        if (rule.dimples && !has_dimples) {
+            report.inform(contrast, ratio);
+            continue;
+        }
+        report.at_least(contrast, ratio, kContrast);
         report.at_most(
             fmt::format("{}: {}, left against right", name, rule.name), 100 * result.difference,
             kMirror, "%");

@@ -172,7 +172,7 @@ Status measure_maker(HeadlessRenderer& headless, QualityReport& report) {
 Status measure_wrinkles(HeadlessRenderer& headless, QualityReport& report) {
     measure_field(report);
     measure_furrows(report);
-    LIMN_TRY(measure_face("head", make_head({}), report));
+    LIMN_TRY(measure_face("head", make_head({}), report, true));
     LIMN_TRY(measure_wrinkle_methods(headless, report));
     return measure_maker(headless, report);
 }

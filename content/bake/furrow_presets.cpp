@@ -17,8 +17,8 @@ constexpr FurrowPreset kPresets[] = {
     {"distinct", "6.5b", 0, 0.8f, Blinn, 0.2f, 0.5f, 0.2f, 100, 1.1f},
     {"smooth", "6.6a", 0, 0.3f, Blinn, 0.2f, 0.5f, 0.3f, 100, 1.0f},
     {"rough", "6.6b", 0.3f, 0.3f, Blinn, 0.2f, 0.5f, 0.3f, 100, 1.0f},
-    {"measured_1", "6.7a", 0, 0.5f, Measured1, 0, 0, 0, 0, 0.8f},
-    {"measured_2", "6.7b", 0, 0.5f, Measured2, 0, 0, 0, 0, 0.8f},
+    {"brdf_1", "6.7a", 0, 0.5f, Brdf1, 0, 0, 0, 0, 0.8f},
+    {"brdf_2", "6.7b", 0, 0.5f, Brdf2, 0, 0, 0, 0, 0.8f},
     {"light_skin", "6.7c", 0, 0.5f, Blinn, 0.05f, 0.2f, 0.1f, 120, 0.8f},
     {"dark_skin", "6.7d", 0, 0.5f, Blinn, 0.5f, 0.6f, 0.4f, 70, 0.8f},
 };

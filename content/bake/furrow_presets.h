@@ -10,7 +10,7 @@ namespace limn {
 // and (d), text and captions Figure 6.8 (a) and (b).
 
 /// How the skin of a figure is lit.
-enum class FurrowLighting : std::uint8_t { Blinn, Measured1, Measured2 };
+enum class FurrowLighting : std::uint8_t { Blinn, Brdf1, Brdf2 };
 
 struct FurrowPreset {
     const char* name;
@@ -18,7 +18,7 @@ struct FurrowPreset {
     float noise;
     float bump;
     FurrowLighting lighting;
-    float melanin;    ///< 0 .. 1; this and the following are 0 where the lighting is measured
+    float melanin;    ///< 0 .. 1; this and the following are 0 where it has lobes
     float blood;      ///< 0 .. 1
     float specular;   ///< 0 .. 1
     float shininess;  ///< 0 .. 128

@@ -320,7 +320,7 @@ TEST_CASE(
     "furrow edits: the look of skin survives a round trip through its material"
     * technique("wrinkle.furrow.editor")) {
     for (const FurrowReflection reflection :
-         {FurrowReflection::Own, FurrowReflection::Measured1, FurrowReflection::Measured2}) {
+         {FurrowReflection::Own, FurrowReflection::Brdf1, FurrowReflection::Brdf2}) {
         const FurrowLook look = {reflection, 0.3f, 0.6f, 0.25f, 70};
         Material material;
         set_furrow_look(material, look);
@@ -361,7 +361,7 @@ TEST_CASE(
     file.furrows.arrows.push_back({{0.1f, 1.0f / 3.0f, -0.7f}, {1e-7f, 1.9f, 0}, {0, 0, 0}, 9.7f});
     file.furrows.style = {.scale = 1.1f, .noise = 0.3f, .bump = 0.7f, .seed = 12};
     file.furrows.tiles = true;
-    file.skin = {FurrowReflection::Measured2, 0.1f, 0.2f, 0.3f, 99};
+    file.skin = {FurrowReflection::Brdf2, 0.1f, 0.2f, 0.3f, 99};
     const std::string path = folder.file("hand.furrows.json");
     REQUIRE(save_furrows(path, file).ok());
     const auto loaded = load_furrows(path);

@@ -29,13 +29,13 @@ constexpr float kGrazing =
     0.02f;  // sine of the angle below which a ray counts as parallel to a plane
 
 /// The fitted BRDFs were never published: sets of lobes of the same kind.
-struct Measured {
+struct LobeSet {
     Vec3 diffuse;
     float across[2];
     float along[2];
     float exponent[2];
 };
-constexpr Measured kMeasured[] = {
+constexpr LobeSet kLobeSets[] = {
     {{0.60f, 0.42f, 0.33f}, {-0.95f, -0.55f}, {0.95f, 0.45f}, {20, 4}},
     {{0.40f, 0.26f, 0.19f}, {-0.98f, -0.60f}, {0.98f, 0.50f}, {40, 5}},
 };
@@ -178,9 +178,9 @@ FurrowLook furrow_look_of(const Material& material) {
         .specular = material.specular.x,
         .shininess = material.shininess};
     if (material.shading == ShadingModel::Lafortune) {
-        look.reflection = Vec3(material.base_color) == kMeasured[1].diffuse
-                              ? FurrowReflection::Measured2
-                              : FurrowReflection::Measured1;
+        look.reflection = Vec3(material.base_color) == kLobeSets[1].diffuse
+                              ? FurrowReflection::Brdf2
+                              : FurrowReflection::Brdf1;
     }
     return look;
 }
@@ -197,14 +197,14 @@ void set_furrow_look(Material& material, const FurrowLook& look) {
         material.skin_color = {0, 0, 0};  // Bando's model has no rim light
         return;
     }
-    const Measured& measured = kMeasured[look.reflection == FurrowReflection::Measured1 ? 0 : 1];
+    const LobeSet& lobes = kLobeSets[look.reflection == FurrowReflection::Brdf1 ? 0 : 1];
     material.shading = ShadingModel::Lafortune;
     material.pigments = Pigments::None;
-    material.base_color = Vec4(measured.diffuse, material.base_color.w);
+    material.base_color = Vec4(lobes.diffuse, material.base_color.w);
     material.lobes.clear();
     for (std::size_t i = 0; i < 2; ++i) {
         material.lobes.push_back(
-            {Vec3(measured.across[i]), Vec3(measured.along[i]), Vec3(measured.exponent[i])});
+            {Vec3(lobes.across[i]), Vec3(lobes.along[i]), Vec3(lobes.exponent[i])});
     }
 }
 
@@ -215,11 +215,11 @@ void set_furrow_preset(Furrows& furrows, FurrowLook& look, const FurrowPreset& p
         look = {
             FurrowReflection::Own, preset.melanin, preset.blood, preset.specular, preset.shininess};
         break;
-    case FurrowLighting::Measured1:
-        look.reflection = FurrowReflection::Measured1;
+    case FurrowLighting::Brdf1:
+        look.reflection = FurrowReflection::Brdf1;
         break;
-    case FurrowLighting::Measured2:
-        look.reflection = FurrowReflection::Measured2;
+    case FurrowLighting::Brdf2:
+        look.reflection = FurrowReflection::Brdf2;
         break;
     }
 }

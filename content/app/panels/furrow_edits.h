@@ -84,9 +84,9 @@ void remake_furrows(Furrows& furrows);
 
 /// The reflection model of the skin.
 enum class FurrowReflection : std::uint8_t {
-    Own,  ///< Blinn's model with the parameters of FurrowLook (skin.blinn, skin.melanin-blood)
-    Measured1,  ///< BRDF1: stand-ins for the measured lobes, which were not published
-    Measured2,  ///< BRDF2
+    Own,    ///< Blinn's model with the parameters of FurrowLook (skin.blinn, skin.melanin-blood)
+    Brdf1,  ///< BRDF1: stand-ins for the measured lobes, which were not published
+    Brdf2,  ///< BRDF2
 };
 
 /// Section "skin material" of the editor.

@@ -377,8 +377,8 @@ void FurrowPanel::draw_skin(World& world, UndoStack& undo) {
         return;
     }
     constexpr std::pair<const char*, FurrowReflection> kReflections[] = {
-        {"BRDF1", FurrowReflection::Measured1},
-        {"BRDF2", FurrowReflection::Measured2},
+        {"BRDF1", FurrowReflection::Brdf1},
+        {"BRDF2", FurrowReflection::Brdf2},
         {"Own parameters", FurrowReflection::Own}};
     FurrowLook look = furrow_look_of(*material);
     const FurrowLook before = look;

@@ -413,7 +413,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"shadow.vol-per-triangle", "shadow volumes per triangle"},
     {"shadow.volume-count", "shadow volumes, stencil counting"},
     {"skin.blinn", "Blinn skin model"},
-    {"skin.brdf-lafortune", "measured skin BRDF, Lafortune lobes"},
+    {"skin.brdf-lafortune", "skin BRDF of Lafortune lobes, as fitted to measurements"},
     {"skin.detail", "skin pores, detail normals"},
     {"skin.diffusion", "subsurface scattering, SSS, diffusion profile in screen space"},
     {"skin.gloss", "skin specular, two GGX lobes"},
