@@ -49,6 +49,8 @@
 #include "systems/particles/beam_system.h"
 #include "systems/particles/billboard_system.h"
 #include "systems/particles/gpu_particle_system.h"
+#include "systems/particles/gpu_shapes.h"
+#include "systems/particles/height_image_system.h"
 #include "systems/particles/particle_balls_system.h"
 #include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
@@ -190,6 +192,7 @@ void add_water_systems(SystemList& systems) {
     systems.add<add_wave_tables>(Create, Both);
     systems.add<add_noise_fields>(Create, Both);
     systems.add<add_shoaling_states>(Create, Both);
+    systems.add<add_height_images>(Create, Both);
     systems.add<add_spray_drops>(Create);
     systems.add<add_wake_states>(Create, Both);
     systems.add<add_floating_states>(Create, Both);
@@ -198,6 +201,7 @@ void add_water_systems(SystemList& systems) {
     systems.add<age_wave_packets>(Waves);
     systems.add<update_noise_surfaces>(Waves, Both);
     systems.add<update_shoaling_waves>(Waves, Both);
+    systems.add<update_height_images>(Waves, Both);
     systems.add<shape_height_meshes>(Waves, Both);
     systems.add<emit_wakes>(Waves);              // after aging: new rings get their exact age
     systems.add<fill_wave_tables>(Waves, Both);  // after aging and wakes
@@ -267,6 +271,7 @@ FrameTime& insert_resources(World& world) {
     resource_or_default<Assets>(world);
     resource_or_default<WeatherState>(world);
     resource_or_default<ParticleObstacles>(world);
+    resource_or_default<GpuShapes>(world);
     resource_or_default<StepJumps>(world);
     resource_or_default<WalkableMeshes>(world);
     resource_or_default<RagdollRigs>(world);

@@ -377,6 +377,7 @@ struct Million {
         world.insert_resource(WeatherState{});
         world.insert_resource(Assets{});
         world.insert_resource(ParticleObstacles{});
+        world.insert_resource(GpuShapes{});
         emitter.executor = ParticleExecutor::Gpu;
         emitter.rate = 0;
         emitter.bursts = {{.time = 0, .count = static_cast<float>(kMillion)}};

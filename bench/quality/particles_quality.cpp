@@ -40,6 +40,7 @@ struct Fountain : QualityScene {
         world.insert_resource(RandomSeed{});
         world.insert_resource(WeatherState{});
         world.insert_resource(ParticleObstacles{});
+        world.insert_resource(GpuShapes{});
         emitter = world.create(
             settings, motion, WorldTransform{placed_at({0, 0, 0})},
             PreviousWorldTransform{placed_at({0, 0, 0})});

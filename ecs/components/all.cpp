@@ -27,6 +27,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/height_fog.h"
+#include "ecs/components/height_image.h"
 #include "ecs/components/ik.h"
 #include "ecs/components/ink.h"
 #include "ecs/components/input.h"
@@ -260,6 +261,7 @@ void register_all_components() {
     register_component<WakeEmitter>();
     register_component<WakeState>();
     register_component<NoiseSurface>();
+    register_component<HeightImage>();
     register_component<ShoalingWaves>();
     register_component<SpraySource>();
     register_component<SprayObstacle>();

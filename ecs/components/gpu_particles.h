@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -100,15 +101,21 @@ struct EmitterPose {
     Affine now;
 };
 
-enum class GpuColliderKind : std::uint32_t { Plane, Sphere, Box };
+enum class GpuColliderKind : std::uint32_t { Plane, Sphere, Box, Heights, Mesh };
 
-/// What the GPU's particles hit in a step, in world space. Meshes, height fields and water are for
-/// the CPU.
+/// The heights of a field or the triangles of a mesh, as the GPU reads them
+/// (systems/particles/gpu_shapes.h). Steps share it while it does not change.
+using GpuShape = std::shared_ptr<const std::vector<Vec4>>;
+
+/// What the GPU's particles hit in a step, in world space. Water is for the CPU.
 struct GpuCollider {
     GpuColliderKind kind = GpuColliderKind::Plane;
     Vec4 rows[3] = {};      ///< plane: normal, offset [m]; sphere: center, radius [m], then 1 if
-                            ///< it is hollow; box: of the matrix box_from_world
-    Vec3 half = {0, 0, 0};  ///< of a box [m]
+                            ///< it is hollow; box, mesh: of the matrix box_from_world or
+                            ///< shape_from_world; heights: origin, then size of a cell [m]
+    Vec3 half = {0, 0, 0};  ///< of a box [m]; of heights: points along x and z; of a mesh: number
+                            ///< of nodes, largest coordinate [m]
+    GpuShape shape{};       ///< of heights and meshes
 };
 
 /// A step for the GPU.

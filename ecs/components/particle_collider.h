@@ -16,7 +16,8 @@ enum class ColliderShape : std::uint8_t {
     Sphere,       ///< of radius size.x
     Box,          ///< of half extents `size`
     Mesh,         ///< the triangles of the entity's mesh, deformed as it is; both of their sides
-    HeightField,  ///< solid below its noise surface, which must not be turned or scaled
+    HeightField,  ///< solid below its heights (noise_surface, height_image, shoaling_waves), which
+                  ///< must not be turned or scaled
     Water,        ///< the surface of its water with all waves, from above
 };
 

@@ -143,7 +143,8 @@ std::uint32_t particle_stride(float fraction) {
 
 std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
-    const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout) {
+    const GpuParticles& particles, std::uint64_t from, GpuShapeList& shapes,
+    ParticleStepTexels& layout) {
     const std::span<const GpuParticleStep> kept = particles.kept();
     const std::uint64_t first_kept = particles.step - kept.size();
     const std::size_t skipped = std::min<std::size_t>(
@@ -175,20 +176,74 @@ std::vector<Vec4> pack_particle_steps(
         }
     }
     layout.colliders = static_cast<int>(texels.size());
+    layout.has_shapes = false;
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
         for (const GpuCollider& one : step.colliders) {
             texels.insert(texels.end(), std::begin(one.rows), std::end(one.rows));
             texels.emplace_back(one.half, word(static_cast<std::uint32_t>(one.kind)));
+            texels.emplace_back(word(shapes.find_or_add(one.shape)), 0.0f, 0.0f, 0.0f);
+            layout.has_shapes = layout.has_shapes || one.shape != nullptr;
         }
     }
     return texels;
 }
 
+void GpuShapeList::begin_frame() {
+    if (std::exchange(has_grown_, false)
+        && std::erase_if(entries_, [](const Entry& entry) { return !entry.used; }) > 0) {
+        std::uint32_t first = 0;
+        for (Entry& entry : entries_) {
+            entry.first = first;
+            first += static_cast<std::uint32_t>(entry.shape->size());
+        }
+        is_new_ = true;
+    }
+    for (Entry& entry : entries_) {
+        entry.used = false;
+    }
+}
+
+std::uint32_t GpuShapeList::find_or_add(const GpuShape& shape) {
+    if (shape == nullptr) {
+        return 0;
+    }
+    const auto found = std::find_if(
+        entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.shape == shape; });
+    if (found != entries_.end()) {
+        found->used = true;
+        return found->first;
+    }
+    const std::uint32_t first =
+        entries_.empty()
+            ? 0
+            : entries_.back().first + static_cast<std::uint32_t>(entries_.back().shape->size());
+    entries_.push_back({shape, first, true});
+    is_new_ = has_grown_ = true;
+    return first;
+}
+
+void GpuShapeList::upload() {
+    if (!is_new_) {
+        return;
+    }
+    std::vector<Vec4> all;
+    for (const Entry& entry : entries_) {
+        all.insert(all.end(), entry.shape->begin(), entry.shape->end());
+    }
+    buffer_ = gpu::Buffer::of("particle shapes", std::span<const Vec4>(all));
+    texels_.set(buffer_);
+    is_new_ = false;
+}
+
+void GpuShapeList::bind(gpu::Device& device) const {
+    texels_.bind(device, layout::kParticleShapesUnit);
+}
+
 Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     GpuParticlePools pools;
-    pools.programs_.births = LIMN_TRY(load_update(device, {}));
-    pools.programs_.old = LIMN_TRY(load_update(device, {{"OLD"}}));
-    pools.programs_.plain = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
+    pools.programs_[0][0].births = LIMN_TRY(load_update(device, {}));
+    pools.programs_[0][0].old = LIMN_TRY(load_update(device, {{"OLD"}}));
+    pools.plain_ = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
     return pools;
 }
 
@@ -197,6 +252,7 @@ void GpuParticlePools::begin_frame(const World& world) {
         pools_.clear();
     }
     updated_ = false;
+    shapes_.begin_frame();
     for (auto& [entity, pool] : pools_) {
         pool->used = false;
     }
@@ -218,18 +274,27 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
     return true;
 }
 
-bool GpuParticlePools::can_collide_with_depth(gpu::Device& device) {
-    if (programs_.depth_old == nullptr) {
-        const Result<const gpu::Program*> births = load_update(device, {{"DEPTH_COLLISION"}});
-        const Result<const gpu::Program*> old = load_update(device, {{"DEPTH_COLLISION"}, {"OLD"}});
+const GpuParticlePools::Programs*
+GpuParticlePools::find_programs(gpu::Device& device, bool has_shapes, bool has_depth) {
+    Programs& found = programs_[has_shapes ? 1 : 0][has_depth ? 1 : 0];
+    if (found.old == nullptr) {
+        std::vector<gpu::ShaderDefine> defines;
+        if (has_shapes) {
+            defines.push_back({"SHAPES"});
+        }
+        if (has_depth) {
+            defines.push_back({"DEPTH_COLLISION"});
+        }
+        const Result<const gpu::Program*> births = load_update(device, defines);
+        defines.push_back({"OLD"});
+        const Result<const gpu::Program*> old = load_update(device, defines);
         if (!births || !old) {
             log_error("{}", (births ? old : births).error().message);
-            return false;
+            return nullptr;
         }
-        programs_.depth_births = *births;
-        programs_.depth_old = *old;
+        found = {*births, *old};
     }
-    return true;
+    return &found;
 }
 
 bool GpuParticlePools::collides_with_depth() const {
@@ -258,7 +323,8 @@ void GpuParticlePools::add(
     }
     pool.stride = stride;
     pool.steps.upload(
-        *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
+        *frame.ring,
+        pack_particle_steps(emitter, collision, particles, pool.done, shapes_, pool.layout));
     const std::span<const GpuParticleStep> pending =
         particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
     pool.done = particles.step;
@@ -280,8 +346,7 @@ void GpuParticlePools::add(
     }
     const bool closed_form = pool.closed_form;
     const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
-    pool.collide_depth =
-        depth > 0 && !closed_form && can_collide_with_depth(*frame.device) ? depth : 0.0f;
+    pool.collide_depth = depth > 0 && !closed_form ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);
@@ -291,9 +356,16 @@ void GpuParticlePools::add(
 /// Dispatches the update of the particles born before the steps to simulate, and of those born
 /// during them.
 void GpuParticlePools::move(
-    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const {
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) {
     const bool collides = has_depth && pool.collide_depth > 0;
     const bool is_plain_step = pool.plain.has_value() && !collides;
+    const Programs* const programs = find_programs(device, pool.layout.has_shapes, collides);
+    if (programs == nullptr) {
+        return;
+    }
+    if (pool.layout.has_shapes) {
+        shapes_.bind(device);
+    }
     pool.steps.bind(device, layout::kParticleStepsUnit);
     device.bind_storage(layout::kParticleStateBinding, pool.state);
     device.bind_storage(layout::kParticleBitsBinding, pool.bits);
@@ -329,9 +401,7 @@ void GpuParticlePools::move(
         }
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
-    const gpu::Program* const old = is_plain_step ? programs_.plain
-                                    : collides    ? programs_.depth_old
-                                                  : programs_.old;
+    const gpu::Program* const old = is_plain_step ? plain_ : programs->old;
     // The slots are a ring: indices beyond its end wrap to its beginning.
     const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
     const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);
@@ -343,7 +413,7 @@ void GpuParticlePools::move(
         dispatch(program, ring_end, end, first_slot - pool.capacity);
     };
     dispatch_parts(*old, 0, pool.old);
-    dispatch_parts(*(collides ? programs_.depth_births : programs_.births), pool.old, pool.count);
+    dispatch_parts(*programs->births, pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
@@ -353,6 +423,7 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
     if (pools_.empty()) {
         return;
     }
+    shapes_.upload();
     std::vector<Use> writes;
     for (const auto& [entity, pool] : pools_) {
         for (const gpu::Buffer* const buffer : {&pool->state, &pool->bits, &pool->instances}) {

@@ -31,10 +31,11 @@ class World;
 
 /// Layout of the texels of steps.
 struct ParticleStepTexels {
-    int steps = 0;      ///< number of steps
-    int runs = 0;       ///< texel of the first run of births
-    int forces = 0;     ///< texel of the first force
-    int colliders = 0;  ///< texel of the first collider
+    int steps = 0;            ///< number of steps
+    int runs = 0;             ///< texel of the first run of births
+    int forces = 0;           ///< texel of the first force
+    int colliders = 0;        ///< texel of the first collider
+    bool has_shapes = false;  ///< some colliders are height fields or meshes
 };
 
 struct GpuParticlePool {
@@ -74,11 +75,37 @@ struct GpuParticleView {
     PreviousDepth depth{};      ///< for particles with a collide_depth
 };
 
+/// The shapes of all colliders, one after the other in a buffer.
+class GpuShapeList {
+  public:
+    /// Before the emitters of a frame: drops shapes that the previous frame did not use, if any
+    /// were new in it.
+    void begin_frame();
+    /// The first texel of a shape. 0 if it is null.
+    [[nodiscard]] std::uint32_t find_or_add(const GpuShape& shape);
+    /// Uploads them if any is new.
+    void upload();
+    void bind(gpu::Device& device) const;
+
+  private:
+    struct Entry {
+        GpuShape shape{};
+        std::uint32_t first = 0;
+        bool used = false;
+    };
+    std::vector<Entry> entries_{};
+    bool has_grown_ = false;  ///< since the beginning of the frame
+    bool is_new_ = false;     ///< not all of them are in the buffer
+    gpu::Buffer buffer_{};
+    BufferTexture texels_ = BufferTexture("particle shapes", GL_RGBA32F);
+};
+
 /// Packs the recorded steps from number `from` on into texels, laid out as in particle_gpu.h.
 /// `collision` is null if the particles do not collide.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
-    const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout);
+    const GpuParticles& particles, std::uint64_t from, GpuShapeList& shapes,
+    ParticleStepTexels& layout);
 
 class GpuParticlePools {
   public:
@@ -107,20 +134,20 @@ class GpuParticlePools {
 
   private:
     bool can_sort(gpu::Device& device);
-    bool can_collide_with_depth(gpu::Device& device);
 
-    /// Programs for particles born during the steps to simulate and for those born before; the same
-    /// with depth collision, loaded when first needed; and for plain steps.
+    /// Programs for particles born during the steps to simulate and for those born before.
     struct Programs {
         const gpu::Program* births = nullptr;
         const gpu::Program* old = nullptr;
-        const gpu::Program* depth_births = nullptr;
-        const gpu::Program* depth_old = nullptr;
-        const gpu::Program* plain = nullptr;
     };
-    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) const;
+    /// Those that collide with shapes or with depth are loaded when they are first needed; null if
+    /// they cannot be.
+    const Programs* find_programs(gpu::Device& device, bool has_shapes, bool has_depth);
+    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth);
 
-    Programs programs_{};
+    Programs programs_[2][2]{};            ///< by whether they collide with shapes, with depth
+    const gpu::Program* plain_ = nullptr;  ///< for steps with only gravity and drag
+    GpuShapeList shapes_{};
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
     bool updated_ = false;                                 ///< in this frame

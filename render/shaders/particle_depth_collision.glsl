@@ -82,7 +82,8 @@ Touch touch_depth(vec3 from, vec3 delta, float radius) {
         DepthPlane there = depth_plane(from + fraction * delta, 4.0 * radius + thickness + spacing);
         float change = dot(there.normal, delta);
         before = -behind(there, from, radius);
-        return before >= 0.0 && before + change < 0.0 ? Touch(before / -change, there.normal) : Touch(fraction, plane.normal);
+        return before >= 0.0 && before + change < 0.0 ? Touch(before / -change, there.normal, 0.0)
+                                                : Touch(fraction, plane.normal, 0.0);
     }
-    return Touch(2.0, vec3(0.0));
+    return kNoTouch;
 }

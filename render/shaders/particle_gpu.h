@@ -96,7 +96,7 @@ const uint kEmitterTexels = 7u;
 //  16  its extents; number of forces (word)
 //  17  first texel of the colliders, number of them (words)
 const uint kStepTexels = 18u;
-const uint kColliderTexels = 4u;
+const uint kColliderTexels = 5u;
 const uint kForceTexels = 3u;
 const uint kParticleGroup = 128u;  // particles of a work group
 
@@ -125,6 +125,7 @@ const uint kShadowRecordBinding = 1u;
 // of what moves them,
 const uint kParticleStepsUnit = 0u;
 const uint kPreviousDepthUnit = 1u;
+const uint kParticleShapesUnit = 2u;
 const uint kParticleStateBinding = 0u;
 const uint kParticleBitsBinding = 1u;
 const uint kParticleInstancesBinding = 2u;

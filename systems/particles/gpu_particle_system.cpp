@@ -3,15 +3,12 @@
 #include "systems/particles/emitter_pose.h"
 #include "systems/particles/particle_births.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <utility>
-#include <variant>
+#include <vector>
 
 // Techniques: particle.circular-list, particle.gpu-init, particle.gpu-state, particle.gpu-update,
 //     particle.gpu-update-mrt, particle.linear-window, particle.million
@@ -20,6 +17,7 @@ namespace limn {
 namespace {
 
 constexpr double kMemory = 60;  // how long steps are kept, if particles live that long [s]
+constexpr std::size_t kShapeMemory = 1 << 26;  // of colliders that change from step to step [bytes]
 
 /// Drops the cohorts whose particles will all be dead at the end of the coming step, and the steps
 /// that no living particle was born in.
@@ -66,44 +64,12 @@ void record_step(
         particles.cohorts.push_back({step.first, particles.time});
     }
     particles.clock.born += step.count;
+    const bool has_colliders = !step.colliders.empty();
     particles.steps.push_back(std::move(step));
     ++particles.step;
-}
-
-std::optional<GpuCollider> to_gpu(const PlaneCollider& plane) {
-    return GpuCollider{GpuColliderKind::Plane, {Vec4(plane.normal, plane.offset)}};
-}
-std::optional<GpuCollider> to_gpu(const SphereCollider& sphere) {
-    return GpuCollider{
-        GpuColliderKind::Sphere,
-        {Vec4(sphere.center, sphere.radius), Vec4(sphere.inverted ? 1.0f : 0.0f)}};
-}
-std::optional<GpuCollider> to_gpu(const BoxCollider& box) {
-    GpuCollider found{.kind = GpuColliderKind::Box, .half = box.half};
-    const Affine& world = box.world_from_box;  // a rotation: its transpose is its inverse
-    const Vec3 center = {world.row[0].w, world.row[1].w, world.row[2].w};
-    for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 unit = {world.row[0][axis], world.row[1][axis], world.row[2][axis]};
-        found.rows[axis] = Vec4(unit, -glm::dot(unit, center));
+    if (has_colliders) {
+        limit_shape_memory(kShapeMemory, particles.steps);
     }
-    return found;
-}
-std::optional<GpuCollider> to_gpu(const HeightCollider&) {
-    return std::nullopt;
-}
-std::optional<GpuCollider> to_gpu(const MeshCollider&) {
-    return std::nullopt;
-}
-
-std::vector<GpuCollider> find_gpu_colliders(std::span<const Collider> colliders) {
-    std::vector<GpuCollider> found;
-    for (const Collider& collider : colliders) {
-        if (const auto one =
-                std::visit([](const auto& shape) { return to_gpu(shape); }, collider)) {
-            found.push_back(*one);
-        }
-    }
-    return found;
 }
 
 }  // namespace
@@ -129,9 +95,10 @@ void record_gpu_particles(
         const PreviousWorldTransform, Optional<const ParticleCollision>,
         Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Res<const ParticleObstacles> obstacles, ParticleEnvironment environment) {
+    Res<const ParticleObstacles> obstacles, Res<GpuShapes> shapes,
+    ParticleEnvironment environment) {
     const StepContext context = find_step_context(environment);
-    const std::vector<GpuCollider> colliders = find_gpu_colliders(obstacles->solid.colliders);
+    std::optional<std::vector<GpuCollider>> colliders;  // found when they are first needed
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
@@ -142,7 +109,10 @@ void record_gpu_particles(
         step.inherited = inherited_velocity(emitter, step.pose, context.dt);
         step.motion = find_emitter_motion(motion, wrap, now.world, context);
         if (collision != nullptr && wrap == nullptr && !step.motion.step.closed_form) {
-            step.colliders = colliders;
+            if (!colliders) {
+                colliders = find_gpu_colliders(*obstacles, *shapes);
+            }
+            step.colliders = *colliders;
         }
         const float scale = screen_coverage(emitter, now.world, context.eye);
         if (is_unused(particles.clock)) {

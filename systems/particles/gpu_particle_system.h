@@ -7,6 +7,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/particles/gpu_shapes.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/step_context.h"
 
@@ -25,6 +26,6 @@ void record_gpu_particles(
         const PreviousWorldTransform, Optional<const ParticleCollision>,
         Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Res<const ParticleObstacles> obstacles, ParticleEnvironment environment);
+    Res<const ParticleObstacles> obstacles, Res<GpuShapes> shapes, ParticleEnvironment environment);
 
 }  // namespace limn

@@ -60,14 +60,20 @@ void fill_heights(const ShoalingState& state, double time, HeightField& field) {
 
 void shape_mesh(const HeightField& field, MeshData& mesh) {
     const auto last = static_cast<float>(field.points - 1);
+    bool has_changed = false;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         Vec3& position = mesh.positions[v];
         const Vec2 uv = glm::clamp(Vec2(position.x, position.z) / field.size + 0.5f, 0.0f, 1.0f);
         const auto i = static_cast<std::size_t>(std::lround(uv.x * last));
         const auto j = static_cast<std::size_t>(std::lround(uv.y * last));
         const std::size_t point = j * field.points + i;
+        has_changed = has_changed || position.y != field.height[point]
+                      || mesh.normals[v] != field.normal[point];
         position.y = field.height[point];
         mesh.normals[v] = field.normal[point];
+    }
+    if (!has_changed) {
+        return;  // uploads nothing
     }
     mesh.bounds.min.y = field.low;
     mesh.bounds.max.y = field.low + field.range;

@@ -132,7 +132,8 @@ TEST_CASE("scene warnings: missing colliders") {
         == Warnings{
             "entity \"a\": particle_collider of this shape needs mesh_instance",
             "entity \"b\": particle_collider of this shape needs water",
-            "entity \"c\": particle_collider of this shape needs noise_surface"});
+            "entity \"c\": particle_collider of this shape needs noise_surface, height_image or "
+            "shoaling_waves"});
 }
 
 TEST_CASE("scene warnings: what GPU particles cannot do") {

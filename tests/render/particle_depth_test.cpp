@@ -50,6 +50,7 @@ struct DepthScene : Scene {
         world.insert_resource(RandomSeed{});
         world.insert_resource(WeatherState{});
         world.insert_resource(ParticleObstacles{});
+        world.insert_resource(GpuShapes{});
     }
     /// `holes`: columns of pixels from here on see nothing.
     void see(const DepthWall& wall, int holes = 1 << 20) {

@@ -34,6 +34,7 @@ struct Fountain : Scene {
         world.insert_resource(RandomSeed{});
         world.insert_resource(WeatherState{});
         world.insert_resource(ParticleObstacles{});
+        world.insert_resource(GpuShapes{});
         ParticleEmitter settings;
         settings.executor = ParticleExecutor::Gpu;
         settings.rate = 80000;

@@ -34,6 +34,7 @@ struct Points : Scene {
         world.insert_resource(RandomSeed{});
         world.insert_resource(WeatherState{});
         world.insert_resource(ParticleObstacles{});
+        world.insert_resource(GpuShapes{});
     }
     static ParticleLook look_of(float pixels, const Vec3& color) {
         ParticleLook look;

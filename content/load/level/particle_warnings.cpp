@@ -107,7 +107,14 @@ void check_colliders(const ParticleCheck& check) {
             }
         };
         needs(ColliderShape::Mesh, "mesh_instance");
-        needs(ColliderShape::HeightField, "noise_surface");
+        if (collider.shape == ColliderShape::HeightField
+            && !has_component(world, entity, "noise_surface")
+            && !has_component(world, entity, "height_image")
+            && !has_component(world, entity, "shoaling_waves")) {
+            check.warn(
+                entity, "particle_collider of this shape needs noise_surface, height_image or "
+                        "shoaling_waves");
+        }
         needs(ColliderShape::Water, "water");
     });
     world.query<const ParticleCollision>().each([&](Entity entity, const ParticleCollision&) {
@@ -170,7 +177,7 @@ void check_gpu_particles(const ParticleCheck& check) {
         });
     bool for_cpu = false;
     world.query<const ParticleCollider>().each([&](const ParticleCollider& collider) {
-        for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;
+        for_cpu = for_cpu || collider.shape == ColliderShape::Water;
     });
     world.query<const ParticleEmitter, const ParticleCollision>().each(
         [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision& collision) {
@@ -178,8 +185,7 @@ void check_gpu_particles(const ParticleCheck& check) {
             if (for_cpu && runs_on_gpu(emitter) && !uses_depth_buffer) {
                 check.warn(
                     entity,
-                    "GPU particles collide only with planes, spheres and boxes; for meshes, "
-                    "height fields and water set particle_emitter.executor to cpu, or "
+                    "GPU particles pass through water; set particle_emitter.executor to cpu, or "
                     "particle_collision.collide_depth to collide with what is in view");
             } else if (uses_depth_buffer && !runs_on_gpu(emitter)) {
                 check.warn(
