@@ -260,6 +260,7 @@ LIMN_FIELDS(InertialOffset) {
 
 /// What a MotionGraph plays: all that a snapshot needs to continue in the middle of a transition.
 struct MotionGraphState {
+    MotionGraphId graph{};
     GraphPlayback current{};
     GraphPlayback source{};
     std::uint32_t transition = kNoGraphState;
@@ -278,6 +279,7 @@ struct MotionGraphState {
 };
 
 LIMN_FIELDS(MotionGraphState) {
+    LIMN_FIELD(graph, "that plays; another one of the MotionGraph is blended to");
     LIMN_FIELD(current, "the state that plays");
     LIMN_FIELD(source, "of a crossfade");
     LIMN_FIELD(transition, "index of the transition that is not over");

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -64,7 +65,8 @@ struct PlayingFox {
         world.get<MotionGraph>(fields.entities[0]).events = {event};
         step_world(world, schedule);
         const auto& state = world.get<const MotionGraphState>(fields.entities[0]);
-        return world.resource<MotionGraphs>().graphs[0].states.at(state.current.state).name;
+        const MotionGraphData& graph = world.resource<MotionGraphs>().graphs.at(state.graph.index);
+        return graph.states.at(state.current.state).name;
     }
 
     test::TemporaryFolder folder;
@@ -126,10 +128,75 @@ TEST_CASE("graph update: a bad edit is one line, and the old graph stays") {
     CHECK(error.find('\n') == std::string::npos);
     CHECK(fox.world.resource<MotionGraphs>().edits.empty());
     CHECK(fox.after("go") == "walk");
-    // New graphs need a reload.
-    fox.write(with(
-        R"("motion_graphs": {)", R"("motion_graphs": {"cat": {"states": [{"name": "one"}]}, )"));
-    CHECK(fox.update().ends_with(": \"cat\" was added: reload the level"));
+}
+
+TEST_CASE("graph update: graphs are added, given to characters by a blend, and removed") {
+    const std::size_t begin = kFox.find(R"("fox": {
+  "states")");
+    const std::size_t end = kFox.find(R"(},
+"entities")");
+    const std::string fox_graph(kFox.substr(begin, end - begin));
+    const auto level = [&](const std::string& graphs, const std::string& plays) {
+        std::string text(kFox);
+        text.replace(begin, end - begin, graphs);
+        const std::size_t at = text.find(R"({"graph": "fox"})");
+        return text.replace(at, 16, "{\"graph\": \"" + plays + "\"}");
+    };
+    const std::string runner = R"("runner": {
+        "states": [
+            {"name": "trot", "clips": [{"clip": "fox.trot"}]},
+            {"name": "rest", "clips": [{"clip": "fox.idle"}]}],
+        "transitions": [{"from": "trot", "event": "halt", "to": "rest"}]})";
+    PlayingFox fox;
+    CHECK(fox.after("go") == "walk");
+    const auto state = [&]() -> const MotionGraphState& {
+        return fox.world.get<const MotionGraphState>(fox.fields.entities[0]);
+    };
+    // Before the old one, so that places in the file and in the world differ.
+    fox.write(level(runner + ", " + fox_graph, "fox"));
+    CHECK(fox.update() == "1");
+    CHECK(fox.after("none") == "walk");
+    CHECK(fox.world.resource<MotionGraphs>().graphs.size() == 2);
+    // Nothing jumps: what was shown is the offset with which the new graph begins.
+    fox.write(level(runner + ", " + fox_graph, "runner"));
+    CHECK(fox.update() == "1");
+    CHECK(fox.after("none") == "trot");
+    CHECK(state().graph.index == 1);
+    CHECK(state().turns.size() > 1);
+    CHECK(state().cut == 0);
+    CHECK(fox.after("halt") == "rest");
+    // The old one is removed: nobody plays it.
+    fox.write(level(runner, "runner"));
+    CHECK(fox.update() == "0");
+    CHECK(fox.after("none") == "rest");
+    // Edits of the new one arrive, whatever its place.
+    std::string edited = level(runner, "runner");
+    edited.replace(edited.find(R"("name": "rest")"), 14, R"("name": "wait")");
+    edited.replace(edited.find(R"("to": "rest")"), 12, R"("to": "wait")");
+    fox.write(edited);
+    CHECK(fox.update() == "1");
+    CHECK(fox.after("none") == "trot");
+    // And the old one comes back, in its old place.
+    fox.write(std::string(kFox));
+    CHECK(fox.update() == "1");
+    CHECK(fox.after("none") == "idle");
+    CHECK(state().graph.index == 0);
+    CHECK(fox.world.resource<MotionGraphs>().graphs.size() == 2);
+    CHECK(fox.after("go") == "walk");
+}
+
+TEST_CASE("graph update: graphs that are switched often do not grow") {
+    PlayingFox fox;
+    fox.write(with(R"("motion_graphs": {)", R"("motion_graphs": {"still": {
+        "states": [{"name": "rest", "clips": [{"clip": "fox.idle"}]}]},)"));
+    CHECK(fox.update() == "1");
+    for (std::uint32_t i = 0; i < 12; ++i) {
+        fox.world.get<MotionGraph>(fox.fields.entities[0]).graph = {(i + 1) % 2};
+        step_world(fox.world, fox.schedule);
+    }
+    const auto& graphs = fox.world.resource<MotionGraphs>().graphs;
+    CHECK(graphs[0].transitions.size() == 2);
+    CHECK(graphs[1].transitions.size() == 1);
 }
 
 TEST_CASE("graph update: of two saves before the next step, the second one counts") {

@@ -1,5 +1,6 @@
 #include "content/load/level/level_update.h"
 
+#include "content/load/level/component_json.h"
 #include "content/load/level/level_load.h"
 #include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
@@ -81,8 +82,10 @@ find_changes(const World& world, const LevelFields& before, const LevelFields& n
             {LevelPart::Material, {}, i, AnyComponent::of(now.materials[i]), {}});
     }
     for (std::uint32_t i = 0; i < now.motion_graphs.size(); ++i) {
+        const MotionGraphData old =
+            i < before.motion_graphs.size() ? before.motion_graphs[i] : MotionGraphData{};
         add_change(
-            changes, AnyComponent::of(before.motion_graphs[i]),
+            changes, AnyComponent::of(old),
             {LevelPart::MotionGraph, {}, i, AnyComponent::of(now.motion_graphs[i]), {}});
     }
     return changes;
@@ -113,10 +116,61 @@ void apply_change(World& world, const LevelChange& change) {
         ++assets.material_version;
         break;
     }
-    case LevelPart::MotionGraph:
-        world.resource<MotionGraphs>().edits.push_back(
-            {{change.material}, change.now.as<MotionGraphData>()});
+    case LevelPart::MotionGraph: {
+        auto* const found = world.find_resource<MotionGraphs>();
+        MotionGraphs& graphs = found != nullptr ? *found : world.insert_resource(MotionGraphs{});
+        const auto& data = change.now.as<MotionGraphData>();
+        if (change.material < graphs.graphs.size()) {
+            graphs.edits.push_back({{change.material}, data});
+        } else {
+            graphs.graphs.push_back(data);
+        }
         break;
+    }
+    }
+}
+
+/// Gives the graphs of the file the places that those of these names have in the world, new ones
+/// the next, and keeps those that the file has no longer. What refers to them follows.
+void place_graphs(const std::vector<MotionGraphData>& before, LevelFields& now, EventList& events) {
+    std::vector<MotionGraphData> graphs = before;
+    std::vector<std::uint32_t> places;
+    for (MotionGraphData& graph : now.motion_graphs) {
+        const auto found = std::ranges::find(graphs, graph.name, &MotionGraphData::name);
+        places.push_back(static_cast<std::uint32_t>(found - graphs.begin()));
+        if (found != graphs.end()) {
+            *found = std::move(graph);
+        } else {
+            graphs.push_back(std::move(graph));
+        }
+    }
+    now.motion_graphs = std::move(graphs);
+    const auto place = [&](AnyComponent& value) {
+        if (value.is_empty()) {
+            return;
+        }
+        for_each_asset(
+            value.info().fields, value.data(), [&](std::string_view kind, std::uint32_t& index) {
+                if (kind == asset_kind<MotionGraphId> && index < places.size()) {
+                    index = places[index];
+                }
+            });
+    };
+    const auto place_all = [&](std::vector<AnyComponent>& values) {
+        std::ranges::for_each(values, place);
+    };
+    std::ranges::for_each(now.components, place_all);
+    place_all(now.resources);
+    for (NodeChange& change : now.node_changes) {
+        place(change.set.value);
+    }
+    for (ScriptEvent& event : events.events) {
+        for (ScriptAction& action : event.actions) {
+            place(action.value);
+            for (PrefabEntity& entity : action.prefab.entities) {
+                place_all(entity.components);
+            }
+        }
     }
 }
 
@@ -244,7 +298,6 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     add_names(assets.materials);
     add_names(assets.meshes);
     add_names(assets.paths);
-    add_names(level.motion_graphs);
     add_names(assets.clips);  // which graphs refer to
     return fields;
 }
@@ -254,6 +307,7 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     const std::string path = fields.files.empty() ? "" : fields.files.front();
     Level level = LIMN_TRY(load_level(path, {}, choice, made));
     LevelFields now = remember_fields(level, path);
+    place_graphs(fields.motion_graphs, now, level.events);
     if (now.assets != fields.assets) {
         return fail(
             "{}: {}: reload the level", path, describe_difference(fields.assets, now.assets));

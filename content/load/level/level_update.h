@@ -30,8 +30,8 @@ struct LevelFields {
     std::vector<std::string> assets;                    ///< names of all, which indices refer to
     std::vector<AnyComponent> resources;
     std::vector<Material> materials;
-    std::vector<MotionGraphData> motion_graphs;
-    std::vector<NodeChange> node_changes;  ///< of glTF files
+    std::vector<MotionGraphData> motion_graphs;  ///< of the world: also those that were removed
+    std::vector<NodeChange> node_changes;        ///< of glTF files
 };
 
 enum class LevelPart : std::uint8_t { Component, Resource, Material, MotionGraph };
@@ -48,10 +48,11 @@ struct LevelChange {
 
 /// Loads the level again and sets the fields of components, resources and materials whose values in
 /// the files have changed, and the level's events; also applies what new events set at the start of
-/// the level. Motion graphs that have changed are replaced in the next step (MotionGraphs::edits).
-/// Returns the changes. Fails, and changes nothing, with the loader's error, or if entities, kinds
-/// of components, changes of glTF nodes or assets differ, which needs a reload. `world` must have
-/// been empty when the level was spawned.
+/// the level. Motion graphs that have changed are replaced in the next step (MotionGraphs::edits),
+/// new ones are added, and those that were removed stay unused. Returns the changes. Fails, and
+/// changes nothing, with the loader's error, or if entities, kinds of components, changes of glTF
+/// nodes or assets differ, which needs a reload. `world` must have been empty when the level was
+/// spawned.
 [[nodiscard]] Result<std::vector<LevelChange>> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
 

@@ -94,6 +94,22 @@ std::vector<MotionPlans::Entry> make_plans_again(
     return made;
 }
 
+bool has_edit(const MotionGraphs& data, MotionGraphId graph) {
+    return std::any_of(data.edits.begin(), data.edits.end(), [graph](const MotionGraphEdit& edit) {
+        return edit.graph == graph;
+    });
+}
+
+/// The transition by which characters come to an edited graph. Nothing triggers it: it has neither
+/// an event nor a parameter.
+GraphTransition make_blend(const MotionGraphData& graph) {
+    return {.to = graph.states[0].name, .duration = kEditBlend};
+}
+
+bool has_blend(const MotionGraphData& graph) {
+    return !graph.transitions.empty() && graph.transitions.back() == make_blend(graph);
+}
+
 }  // namespace
 
 void adopt_graph(
@@ -128,30 +144,49 @@ void apply_graph_edits(
         const Transform>
         characters,
     Res<MotionGraphs> data, Res<const Assets> assets, Res<MotionPlans> plans) {
+    characters.each([&](const Skeleton&, const MotionGraph& graph, const MotionGraphState& state,
+                        const MotionStyle*, const Transform&) {
+        // Who changes to another graph is taken over by an edit that leaves it as it is.
+        if (state.graph != graph.graph && graph.graph.index < data->graphs.size()
+            && !has_edit(*data, graph.graph)) {
+            data->edits.push_back({graph.graph, data->graphs[graph.graph.index]});
+        }
+    });
     for (MotionGraphEdit& edit : data->edits) {
         if (edit.graph.index >= data->graphs.size() || edit.data.states.empty()) {
             continue;
         }
-        const MotionGraphData& before = data->graphs[edit.graph.index];
         MotionGraphData& now = edit.data;
-        // Nothing triggers it: it has neither an event nor a parameter.
-        const auto blend = static_cast<std::uint32_t>(now.transitions.size());
-        now.transitions.push_back({.to = now.states[0].name, .duration = kEditBlend});
-        bool is_used = false;
+        bool is_used = has_blend(now);
+        if (!is_used) {
+            now.transitions.push_back(make_blend(now));
+        }
+        const auto blend = static_cast<std::uint32_t>(now.transitions.size() - 1);
         MotionPlans planned{make_plans_again(edit.graph, now, *plans, *assets)};
         characters.each([&](const Skeleton& skeleton, const MotionGraph& graph,
                             MotionGraphState& state, const MotionStyle* style,
                             const Transform& transform) {
-            const MotionPlan* const old_plan = plans->find(edit.graph, skeleton.skeleton);
-            if (graph.graph != edit.graph || old_plan == nullptr) {
+            if (graph.graph != edit.graph && state.graph != edit.graph) {
+                return;
+            }
+            const MotionPlan* const old_plan = plans->find(state.graph, skeleton.skeleton);
+            if (old_plan == nullptr) {  // it has not played yet
+                state.graph = graph.graph;
                 return;
             }
             const SkeletonData& bones = assets->skeletons[skeleton.skeleton.index];
+            if (planned.find(edit.graph, skeleton.skeleton) == nullptr) {
+                planned.entries.push_back(
+                    {edit.graph, skeleton.skeleton,
+                     std::make_shared<const MotionPlan>(make_motion_plan(now, bones, *assets))});
+            }
+            const MotionGraphData& before = data->graphs[state.graph.index];
             const MotionPlan& plan = *planned.find(edit.graph, skeleton.skeleton);
             const float scale = transform.scale.z;
             adopt_graph(
                 {*assets, bones, before, *old_plan, graph, style, scale},
                 {*assets, bones, now, plan, graph, style, scale}, blend, state);
+            state.graph = edit.graph;
             is_used = is_used || state.transition == blend;
         });
         if (!is_used) {

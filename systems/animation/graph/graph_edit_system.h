@@ -16,7 +16,8 @@ namespace limn {
 // Edits of motion graphs while characters play them (char.motion-select).
 
 /// Replaces the graphs that MotionGraphs::edits lists, makes their plans anew and takes their
-/// characters over (adopt_graph). Edits of graphs that do not exist are ignored.
+/// characters over (adopt_graph), and those whose MotionGraph names another graph than they play.
+/// Edits of graphs that do not exist are ignored.
 void apply_graph_edits(
     Query<
         const Skeleton, const MotionGraph, MotionGraphState, Optional<const MotionStyle>,

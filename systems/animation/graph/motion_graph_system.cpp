@@ -258,6 +258,7 @@ void add_motion_states(
     graphs.each([&](Entity entity, const MotionGraph& graph) {
         if (graph.graph.index < data->graphs.size()) {
             MotionGraphState state;
+            state.graph = graph.graph;
             state.current = {0, graph.phase};
             commands.add(entity, std::move(state));
         }
