@@ -19,7 +19,7 @@
 namespace limn {
 namespace {
 
-constexpr float kFadeTime = 0.25f;    // of a handover [s]
+constexpr float kFadeTime = 0.16f;    // of a handover [s]
 constexpr float kSamePlace = 0.004f;  // of feet that both poses have on the ground [m]
 constexpr float kNeeded = 0.06f;      // weights of a motor's pose above which it is shown,
 constexpr float kNoLonger = 0.02f;    // and below which it is not any more

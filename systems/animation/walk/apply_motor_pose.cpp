@@ -122,7 +122,7 @@ FreeFoot jumping_foot(
     const bool leads = which == state.lead;
     const Vec3 side = 0.9f * leg.side * frame.left;
     const float stride = leads ? 0.06f + 0.38f * fast : -0.1f - 0.34f * fast;
-    const float height = style.tuck * (leads ? 0.75f + 0.25f * fast : 0.6f);
+    const float height = style.tuck * (leads ? 0.62f + 0.38f * fast : 0.5f);
     const FreeFoot rising = {
         side + length * (stride * frame.forward + Vec3(0, height, 0)),
         leads ? -0.35f : -0.6f - 0.4f * fast};
