@@ -7,7 +7,8 @@
 //   WRINKLE_VIEW   instead of the color, the skin's strain in its tangent frame; wrinkle_strength is (tt, bb, tb), and
 //                  w 1 where that frame is known
 //   WRINKLE_MODEL  the wrinkle map is a model of the strain: wrinkle_strength is (tt, bb, tb), and w the weight of its slopes
-//   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both
+//   WRINKLE_LAYERS  the wrinkle map has two layers: wrinkle_strength is of the slopes and then the shade of both. No more,
+//                  as the map has four channels and the strength four numbers; WrinkleMaps add two maps to the normals.
 //   WRINKLE_INDEPENDENT  the second one covers the first
 //   WRINKLE_PHOTO  light from above the map is painted on
 //   WRINKLE_COLUMNS  each column of the image has a method of its own (WrinkleColumns): wrinkle_strength is that of isometric
