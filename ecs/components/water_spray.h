@@ -33,7 +33,11 @@ LIMN_FIELDS(SpraySource) {
     LIMN_FIELD(window, "emitting area of unbounded water", "m", 0, 1e5);
 }
 
-/// A point of a wall that waves hit.
+/// What waves hit: a point of a wall; or, with a WaterTouch or a ParticleCollider that is a ball, a
+/// box or a sphere, that body all along its waterline: moles, boulders, hulls. Of closed-form waves
+/// a crest sprays as it hits. Of an ocean and of ripples, whose crests are not known, the water
+/// does that runs against the body as fast as in their crests; so does a hull that runs into the
+/// water.
 struct SprayObstacle {
     Vec3 normal = {0, 0, 1};
     float rate = 400.0f;
@@ -42,8 +46,8 @@ struct SprayObstacle {
 };
 
 LIMN_FIELDS(SprayObstacle) {
-    LIMN_FIELD(normal, "wall normal in local space");
-    LIMN_FIELD(rate, "drops per second while a crest hits it", "1/s", 0, 1e6);
+    LIMN_FIELD(normal, "wall normal in local space; not of a body with a shape");
+    LIMN_FIELD(rate, "drops per second while a crest hits it, all around it", "1/s", 0, 1e6);
     LIMN_FIELD(spread, "variation of speeds: standard deviation / mean", "", 0, 1);
     LIMN_FIELD(angle, "half angle of the cone of directions", "rad", 0, 1.5);
 }

@@ -1,8 +1,11 @@
 #include "systems/water/water_spray_system.h"
 
 #include "systems/water/water_spray_drops.h"
+#include "systems/water/water_touch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 // Techniques: water.crest-spray, water.impact-spray
@@ -13,6 +16,34 @@ namespace {
 
 constexpr float kSprayReach =
     3.0f;  ///< largest height of the surface above or below an obstacle [m]
+
+Affine centered_at(const Affine& world, const Vec3& offset) {
+    return world * affine_from(offset, Quat(1, 0, 0, 0), Vec3(1));
+}
+
+/// The shapes that an obstacle has by what is beside it; empty: it is a point.
+std::vector<SprayBody> find_spray_bodies(
+    const Affine& now, const Affine& before, const WaterTouch* touch, const TouchParts* parts,
+    const ParticleCollider* collider) {
+    std::vector<SprayBody> bodies;
+    if (touch != nullptr) {
+        std::vector<TouchingShape> shapes;
+        add_touching_shapes(*touch, Affine{}, parts, nullptr, nullptr, shapes);
+        for (const TouchingShape& one : shapes) {
+            bodies.push_back(
+                {.is_box = one.shape == WallShape::Box,
+                 .half = one.half,
+                 .world = centered_at(now, one.offset),
+                 .before = centered_at(before, one.offset)});
+        }
+    } else if (collider != nullptr && collider->shape == ColliderShape::Box) {
+        bodies.push_back({true, collider->size, now, before});
+    } else if (
+        collider != nullptr && collider->shape == ColliderShape::Sphere && !collider->hollow) {
+        bodies.push_back({false, Vec3(collider->size.x), now, before});
+    }
+    return bodies;
+}
 
 }  // namespace
 
@@ -27,7 +58,11 @@ void add_spray_drops(
 
 void update_spray(
     WaterQuery waters, Query<const SpraySource, SprayDrops> sources,
-    Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
+    Query<
+        const SprayObstacle, const WorldTransform, Optional<const PreviousWorldTransform>,
+        Optional<const WaterTouch>, Optional<const TouchParts>, Optional<const ParticleCollider>,
+        SprayDrops, Without<SpraySource>>
+        obstacles,
     Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const auto random_of = [&](Entity entity) {
         return Random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
@@ -42,15 +77,31 @@ void update_spray(
             spray_breakers(surface, source, time->step, random, drops->drops);
         }
     }
+    std::vector<float> crest_speeds(surfaces.size(), -1.0f);  // once for all bodies
     obstacles.each([&](Entity entity, const SprayObstacle& obstacle,
-                       const WorldTransform& transform, SprayDrops& drops) {
+                       const WorldTransform& transform, const PreviousWorldTransform* previous,
+                       const WaterTouch* touch, const TouchParts* parts,
+                       const ParticleCollider* collider, SprayDrops& drops) {
         drops.drops.clear();
         Random random = random_of(entity);
         const Vec3 point = transform_point(transform.world, Vec3(0));
-        const Vec3 normal =
-            normalize_or(transform_vector(transform.world, obstacle.normal), Vec3(0, 1, 0));
-        for (const WaterSurface& surface : surfaces) {
-            if (std::abs(surface.frame.origin.y - point.y) < kSprayReach) {
+        const std::vector<SprayBody> bodies = find_spray_bodies(
+            transform.world, previous != nullptr ? previous->world : transform.world, touch, parts,
+            collider);
+        SprayObstacle part = obstacle;
+        part.rate /= static_cast<float>(std::max<std::size_t>(bodies.size(), 1));
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const WaterSurface& surface = surfaces[i];
+            if (!bodies.empty() && !(crest_speeds[i] >= 0)) {
+                crest_speeds[i] = surge_speed(surface, {point.x, point.z});
+            }
+            const float crest_speed = crest_speeds[i];
+            for (const SprayBody& body : bodies) {
+                spray_body(surface, part, body, crest_speed, time->step, random, drops.drops);
+            }
+            if (bodies.empty() && std::abs(surface.frame.origin.y - point.y) < kSprayReach) {
+                const Vec3 normal =
+                    normalize_or(transform_vector(transform.world, obstacle.normal), Vec3(0, 1, 0));
                 spray_impact(surface, obstacle, point, normal, time->step, random, drops.drops);
             }
         }

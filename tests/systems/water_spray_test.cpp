@@ -1,8 +1,10 @@
+#include "ecs/components/ocean.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/water_dispersion.h"
+#include "systems/water/water_query.h"
 #include "systems/water/water_spray_drops.h"
 #include "tests/near.h"
 #include "tests/technique.h"
@@ -12,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace limn::water_spray_test {
 
@@ -209,6 +213,125 @@ TEST_CASE(
     spray_impact(sea.surface, obstacle, {2.5f, 0, 0}, grazed, 1, random, drops);
     for (const SprayDrop& drop : drops) {
         CHECK(glm::dot(drop.velocity, grazed) >= -1e-6f);
+    }
+}
+
+TEST_CASE(
+    "water spray: an ocean sprays at a wall while its water runs against it"
+    * technique("water.impact-spray")) {
+    World world;
+    Schedule schedule = make_world_schedule();
+    const Entity water =
+        world.create(Transform{}, Water{}, Ocean{.wind_speed = 14, .resolution = 64});
+    const SprayObstacle wall = {.normal = {-1, 0, 0}, .rate = 4000};
+    const Entity point = world.create(Transform{.position = {3, 0, 2}}, wall);
+    start_world(world);
+    std::size_t all = 0;
+    int silent = 0;
+    for (int i = 0; i < 400; ++i) {
+        step_world(world, schedule);
+        const auto surfaces = [&] {
+            std::vector<WaterSurface> found;
+            world.run([&](WaterQuery waters) { found = collect_water_surfaces(waters); });
+            return found;
+        }();
+        REQUIRE(surfaces.size() == 1);
+        const WaterPoint top = sample_water(surfaces[0], {3, 2});
+        const std::vector<SprayDrop>& drops = world.get<const SprayDrops>(point).drops;
+        if (top.velocity.x <= 0) {
+            CHECK(drops.empty());  // it recedes
+        }
+        const float crest = surge_speed(surfaces[0], {3, 2});
+        const float expected = 4000 * surge_share(top.velocity.x, crest) / 60;
+        CHECK(std::abs(static_cast<float>(drops.size()) - expected) <= 1);
+        for (const SprayDrop& drop : drops) {
+            CHECK(drop.velocity.x <= 1e-5f);  // off the wall
+            CHECK(drop.position.y == test::near(static_cast<double>(top.position.y)).epsilon(1e-5));
+        }
+        all += drops.size();
+        silent += drops.empty() ? 1 : 0;
+    }
+    CHECK(all > 500);
+    CHECK(silent > 150);
+    CHECK(world.alive(water));
+}
+
+TEST_CASE("water spray: in a single wave the speed in crests is its orbital speed, and at the "
+          "crest the share is 1") {
+    const Sea sea({.amplitude = 0.8f, .length = 11});
+    CHECK(
+        surge_speed(sea.surface, {0, 0})
+        == test::near(static_cast<double>(orbital_speed(sea.line()))).epsilon(0.1));
+    const float q = orbital_speed(sea.line());
+    for (const float phase : {-2.0f, -1.0f, 0.0f, 0.4f, 1.5f, 3.0f}) {
+        CHECK(
+            surge_share(q * std::cos(phase), q)
+            == test::near(static_cast<double>(impact_share(phase))).scale(1).epsilon(1e-4));
+    }
+    CHECK(surge_share(0.5f, 0.1f) == 0.0625f);  // ripples are too slow
+}
+
+TEST_CASE(
+    "water spray: a body is wet where waves come from, and only at its waterline"
+    * technique("water.impact-spray")) {
+    // Along +x.
+    Sea sea({.amplitude = 0.8f, .length = 12}, 0);
+    sea.surface.water.size = {80, 80};
+    Random random(1, 2, 3, 4);
+    for (const bool is_box : {false, true}) {
+        CAPTURE(is_box);
+        std::vector<SprayDrop> drops;
+        const Affine at = affine_from({2.5f, 0.2f, 1}, Quat(1, 0, 0, 0), Vec3(1));
+        const SprayBody body = {.is_box = is_box, .half = {1, 1.5f, 2}, .world = at, .before = at};
+        const float crest = surge_speed(sea.surface, {2.5f, 1});
+        for (int i = 0; i < 120; ++i) {
+            fill_wave_table(
+                {}, {.waves = {{.amplitude = 0.8f, .length = 12}}}, i / 30.0, sea.waves);
+            spray_body(sea.surface, {.rate = 4000}, body, crest, 1.0f / 60, random, drops);
+        }
+        REQUIRE(drops.size() > 300);
+        std::size_t windward = 0;
+        for (const SprayDrop& drop : drops) {
+            const Vec3 local = drop.position - Vec3(2.5f, 0.2f, 1);
+            CHECK(std::abs(local.x) <= 1.0001f);
+            CHECK(std::abs(local.z) <= 2.0001f);
+            CHECK(std::abs(local.y) <= 1.5f);
+            CHECK(drop.velocity.y > 0);
+            windward += local.x < 0 ? 1 : 0;
+        }
+        // In troughs water runs back and hits the other side.
+        CHECK(windward > drops.size() / 4);
+        CHECK(windward < drops.size());
+        drops.clear();
+        SprayBody high = body;
+        high.world = high.before = affine_from({2.5f, 9, 1}, Quat(1, 0, 0, 0), Vec3(1));
+        spray_body(sea.surface, {.rate = 4000}, high, crest, 1, random, drops);
+        high.world = high.before = affine_from({2.5f, -9, 1}, Quat(1, 0, 0, 0), Vec3(1));
+        spray_body(sea.surface, {.rate = 4000}, high, crest, 1, random, drops);
+        CHECK(drops.empty());
+    }
+}
+
+TEST_CASE(
+    "water spray: a hull that runs through still water throws up a bow wave, at rest nothing"
+    * technique("water.impact-spray")) {
+    WaterSurface still;
+    still.water.size = {100, 100};
+    Random random(1, 2, 3, 4);
+    std::vector<SprayDrop> drops;
+    SprayBody hull = {.half = {0.6f, 0.5f, 2}};
+    for (int i = 0; i < 60; ++i) {
+        spray_body(still, {.rate = 2000}, hull, 0, 1.0f / 60, random, drops);
+    }
+    CHECK(drops.empty());
+    hull.before = affine_from({0, 0, -4.0f / 60}, Quat(1, 0, 0, 0), Vec3(1));  // 4 m/s along +z
+    for (int i = 0; i < 60; ++i) {
+        spray_body(still, {.rate = 2000}, hull, 0, 1.0f / 60, random, drops);
+    }
+    REQUIRE(drops.size() > 200);
+    for (const SprayDrop& drop : drops) {
+        CHECK(drop.position.z > 0);  // at the bow
+        CHECK(drop.velocity.y > 0);
     }
 }
 
