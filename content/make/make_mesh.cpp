@@ -3,6 +3,7 @@
 #include "content/make/head/head.h"
 #include "content/make/models/bar.h"
 #include "content/make/models/boat.h"
+#include "content/make/models/body_part.h"
 #include "content/make/models/fragments.h"
 #include "content/make/models/fur_strands.h"
 #include "content/make/models/hovercraft.h"
@@ -60,6 +61,8 @@ std::span<const MeshKind> mesh_kinds() {
         rigged_kind<BarShape, make_bar, make_bar_rig>(
             "bar", "a flexible bar around +y, with two joints and clips that twist and bend it"),
         mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
+        mesh_kind<BodyPartShape, make_body_part>(
+            "body_part", "a hand, a foot or a forearm, upright, with its back to z"),
         mesh_kind<BoxShape, make_box>("box", "a box, optionally with rounded edges"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
         rigged_kind<CreatureShape, make_creature, make_creature_rig>(

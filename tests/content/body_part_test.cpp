@@ -1,0 +1,105 @@
+#include "content/make/models/body_part.h"
+#include "tests/near.h"
+#include "tests/technique.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace limn::body_part_test {
+namespace {
+
+constexpr std::array<BodyPartKind, 3> kAll = {
+    BodyPartKind::Hand, BodyPartKind::Foot, BodyPartKind::Arm};
+
+/// Vertices at one position count as one.
+std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges_of(const MeshData& mesh) {
+    std::map<std::array<float, 3>, std::uint32_t> first;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    const auto index_of = [&](std::uint32_t v) {
+        const Vec3& p = mesh.positions[v];
+        return first.try_emplace({p.x, p.y, p.z}, v).first->second;
+    };
+    for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            ++edges[{index_of(mesh.indices[t + k]), index_of(mesh.indices[t + (k + 1) % 3])}];
+        }
+    }
+    return edges;
+}
+
+TEST_CASE("body part: it is closed, and as long as requested") {
+    for (const BodyPartKind part : kAll) {
+        CAPTURE(static_cast<int>(part));
+        const MeshData mesh = make_body_part({.part = part, .length = 0.2f, .cells = 64});
+        const auto edges = edges_of(mesh);
+        int open = 0;
+        for (const auto& [edge, count] : edges) {
+            const auto other = edges.find({edge.second, edge.first});
+            open += other == edges.end() || other->second != count ? 1 : 0;
+        }
+        CHECK(open == 0);
+        const auto [low, high] = std::ranges::minmax(mesh.positions, {}, &Vec3::y);
+        CHECK(high.y - low.y == test::near(0.2f).epsilon(0.06));
+    }
+}
+
+TEST_CASE("body part: lengths and breadths of hand and foot are those of an adult") {
+    const auto breadth = [](BodyPartKind part, float length, float from, float to) {
+        const MeshData mesh = make_body_part({.part = part, .length = length, .cells = 64});
+        constexpr float kThumb = 0.045f;  // begins there
+        Vec2 range = {1, -1};
+        for (const Vec3& p : mesh.positions) {
+            const float along = p.y / length + 0.5f;
+            if (along > from && along < to && (part != BodyPartKind::Hand || p.x < kThumb)) {
+                range = {std::min(range.x, p.x), std::max(range.y, p.x)};
+            }
+        }
+        return range.y - range.x;
+    };
+    // Gordon et al. 1989: hands of 194 mm are 90 (4) mm broad, feet of 270 mm 101 (5) mm.
+    CHECK(breadth(BodyPartKind::Hand, 0.213f, 0.55f, 0.6f) == test::near(0.09f).epsilon(0.15));
+    CHECK(breadth(BodyPartKind::Foot, 0.27f, 0.6f, 0.75f) == test::near(0.101f).epsilon(0.15));
+}
+
+TEST_CASE(
+    "body part: the planar map is the view from the front"
+    * technique("wrinkle.furrow.map-planar")) {
+    const MeshData mesh = make_body_part({.part = BodyPartKind::Hand, .length = 0.2f, .cells = 48});
+    for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+        const std::uint32_t* const v = &mesh.indices[t];
+        const Vec3 normal = glm::cross(
+            mesh.positions[v[1]] - mesh.positions[v[0]],
+            mesh.positions[v[2]] - mesh.positions[v[0]]);
+        const float side = normal.z < 0 ? -1.0f : 1.0f;
+        for (int k = 0; k < 3; ++k) {
+            const Vec2 uv = mesh.uvs[v[k]];
+            CHECK(uv.x == test::near(0.5f + side * mesh.positions[v[k]].x / 0.2f).epsilon(1e-3));
+            CHECK(uv.y == test::near(0.5f - mesh.positions[v[k]].y / 0.2f).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE(
+    "body part: the arm is unrolled without a triangle across its seam"
+    * technique("wrinkle.furrow.map-cylinder")) {
+    const MeshData mesh = make_body_part({.part = BodyPartKind::Arm, .cells = 48});
+    float widest = 0;
+    for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+        const auto u = [&](std::size_t k) { return mesh.uvs[mesh.indices[t + k]].x; };
+        const auto y = [&](std::size_t k) { return mesh.positions[mesh.indices[t + k]].y; };
+        const bool side = std::max({std::abs(y(0)), std::abs(y(1)), std::abs(y(2))}) < 0.09f;
+        const float width = std::max({u(0), u(1), u(2)}) - std::min({u(0), u(1), u(2)});
+        widest = std::max(widest, side ? width : 0.0f);
+    }
+    CHECK(widest < 0.1f);
+}
+
+}  // namespace
+}  // namespace limn::body_part_test
