@@ -5,7 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,6 +44,53 @@ TEST_CASE("make: a person becomes a .glb with a skin, 60 joints of a body, clips
         CHECK(!mesh.colors.empty());
         CHECK(mesh.skin.first.size() == mesh.positions.size() + 1);
     }
+}
+
+TEST_CASE("export: a person opens again with its materials, skin and shapes, and speaks") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(
+        folder, {"export", "person", "--set", "seed=7", "--set", "hair=long", "-o", "p.glb"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK(run.out == "p.glb: 6 meshes, 16 shapes\n");
+    const Result<GltfScene> scene = load_gltf(folder.file("p.glb"));
+    REQUIRE(scene);
+    CHECK(scene->warnings.empty());
+    CHECK(scene->skins.size() == 1);
+    CHECK(scene->clips.size() == 6);
+    REQUIRE(scene->materials.size() == 6);
+    for (const Material& material : scene->materials) {
+        CAPTURE(material.name);
+        CHECK((material.shading == ShadingModel::Subsurface) == (material.name == "skin"));
+        CHECK((material.shading == ShadingModel::Hair) == (material.name == "hair"));
+        CHECK((material.sheen.x > 0) == (material.name == "shirt" || material.name == "trousers"));
+    }
+    const MeshData& skin = scene->meshes[0];
+    REQUIRE(skin.morphs.size() == 16);
+    CHECK(skin.morphs[0].name == "bend LeftForearm");
+    CHECK(skin.morphs[8].action_unit == "AU26");
+    CHECK(!skin.morphs[8].positions.empty());
+    const ProgramRun spoken =
+        run_limn(folder, {"speak", "Hello", "--face", "p.glb", "--silent", "-o", "s.glb"});
+    CAPTURE(spoken.err);
+    REQUIRE(spoken.exit_code == 0);
+    const Result<GltfScene> speaks = load_gltf(folder.file("s.glb"));
+    REQUIRE(speaks);
+    REQUIRE(!speaks->clips.empty());
+    CHECK(speaks->clips[0].name == "speech");
+    // The jaw falls in the clip, and the materials are still there.
+    float jaw = 0;
+    for (const ClipSheet& sheet : speaks->clips[0].sheets) {
+        for (std::size_t k = 0; k < sheet.weights.size(); ++k) {
+            jaw = std::max(
+                jaw, sheet.morphing[k % sheet.morphing.size()] == 8 ? sheet.weights[k] : 0.0f);
+        }
+    }
+    CHECK(jaw > 0.1f);
+    CHECK(speaks->materials[0].shading == ShadingModel::Subsurface);
+    const ProgramRun head = run_limn(folder, {"export", "head", "--set", "seed=7", "-o", "h.glb"});
+    CHECK(head.exit_code == 1);
+    CHECK(head.err.find("expected a person") != std::string::npos);
 }
 
 TEST_CASE("make: a mesh without a skeleton; morph targets are written, too") {

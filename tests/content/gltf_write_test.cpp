@@ -315,6 +315,39 @@ TEST_CASE("gltf write: images, textures and how they are placed come back") {
     CHECK(read.occlusion_strength == 0.5f);
 }
 
+TEST_CASE("gltf write: skin and hair come back as shading models of extras") {
+    GltfScene scene = make_scene();
+    Material& material = scene.materials[0];
+    material.shading = ShadingModel::Subsurface;
+    material.scatter = {0.003f, 0.002f, 0.001f};
+    material.specular = Vec3(0.03f);
+    material.gloss = 0.25f;
+    material.gloss_roughness = 0.3f;
+    const auto read = [&] {
+        const auto bytes = write_glb(scene);
+        REQUIRE_MESSAGE(bytes.ok(), (bytes ? std::string() : bytes.error().message));
+        const auto parsed = parse_gltf(*bytes, "scene.glb", "");
+        REQUIRE(parsed.ok());
+        REQUIRE(parsed->warnings.empty());
+        return parsed->materials[0];
+    };
+    const Material skin = read();
+    CHECK(skin.shading == ShadingModel::Subsurface);
+    CHECK(skin.scatter == material.scatter);
+    CHECK(skin.specular == material.specular);
+    CHECK(skin.gloss == 0.25f);
+    CHECK(skin.gloss_roughness == 0.3f);
+    material.shading = ShadingModel::Hair;
+    material.hair_scatter = 0.7f;
+    material.roughness_across = 0.4f;
+    const Material hair = read();
+    CHECK(hair.shading == ShadingModel::Hair);
+    CHECK(hair.hair_scatter == 0.7f);
+    CHECK(hair.roughness_across == 0.4f);
+    material.shading = ShadingModel::Pbr;
+    CHECK(read().scatter == Material{}.scatter);
+}
+
 TEST_CASE("gltf write: relief comes back, in extras that other programs ignore") {
     GltfScene scene = make_scene();
     ImageData& image = scene.images.emplace_back();

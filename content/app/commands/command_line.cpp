@@ -508,17 +508,24 @@ Command add_make(CLI::App& program, MakeOptions& options) {
 }
 
 Command add_export(CLI::App& program, ExportOptions& options) {
-    CLI::App* app = program.add_subcommand("export", "Write the built-in head as glTF");
-    app->add_option("name", options.name, "head, or portrait: with hair")
+    CLI::App* app = program.add_subcommand("export", "Write the built-in head or a person as glTF");
+    app->add_option(
+           "name", options.name, "head; portrait: with hair; person: dressed, from head to toe")
         ->type_name("NAME")
         ->required()
-        ->check(CLI::IsMember({"head", "portrait"}));
+        ->check(CLI::IsMember({"head", "portrait", "person"}));
     app->add_option("-o,--out", options.out, "file to write")->type_name("FILE.glb")->required();
+    add_assignments(
+        *app, options.assignments, "--set",
+        "a parameter of the person; `limn components` lists them with ranges and defaults");
     app->footer("Skin, eyes, teeth and mouth, with skeleton and the shapes of its FACS action "
                 "units, for\n"
-                "limn speak, limn import markers --onto or other programs.\n\n"
+                "limn speak, limn import markers --onto or other programs. A person has fewer "
+                "shapes, clips\n"
+                "of its body, and the materials of skin, hair and cloth.\n\n"
                 "Examples:\n"
                 "  limn export head -o head.glb\n"
+                "  limn export person --set seed=7 --set hair=long -o person.glb\n"
                 "  limn speak \"Hello!\" --face head.glb -o hello.glb");
     return {app, [&options] { return run_export(options); }};
 }

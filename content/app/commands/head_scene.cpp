@@ -35,6 +35,31 @@ constexpr std::array kLooks{
     PartLook{"scalp", true, {0.05f, 0.035f, 0.025f}, 0.7f},
 };
 
+/// By the part of a person that it is of; vertices have the colors.
+void dress(Material& material) {
+    const std::string& part = material.name;
+    if (part == "skin") {
+        material.shading = ShadingModel::Subsurface;
+        material.roughness = 0.5f;
+        material.specular = Vec3(0.028f);
+        material.gloss = 0.18f;
+        material.gloss_roughness = 0.34f;
+        material.scatter = {0.00367f, 0.00137f, 0.00068f};
+    } else if (part == "hair") {
+        material.shading = ShadingModel::Hair;
+        material.roughness = 0.36f;
+        material.hair_scatter = 0.6f;
+    } else if (part == "eyes") {
+        material.roughness = 0.08f;
+    } else if (part == "shoes") {
+        material.roughness = 0.42f;
+    } else {
+        material.roughness = 0.88f;
+        material.sheen = Vec3(0.05f);
+        material.sheen_roughness = 0.55f;
+    }
+}
+
 }  // namespace
 
 bool is_head_name(std::string_view name) {
@@ -74,11 +99,25 @@ Result<GltfScene> make_head_scene(std::string_view name) {
     return scene;
 }
 
+Result<GltfScene> make_person_scene(const std::vector<Assignment>& assignments) {
+    GltfScene scene = LIMN_TRY(make_model_scene(
+        {.kind = "person", .name = "person", .parts = true, .assignments = assignments}));
+    for (Material& material : scene.materials) {
+        dress(material);
+    }
+    return scene;
+}
+
 Status run_export(const ExportOptions& options) {
     if (!options.out.ends_with(".glb")) {
         return fail("{}: expected a file name ending in .glb", options.out);
     }
-    const GltfScene scene = LIMN_TRY(make_head_scene(options.name));
+    const bool is_person = options.name == "person";
+    if (!is_person && !options.assignments.empty()) {
+        return fail("--set: a {} has no parameters, expected a person", options.name);
+    }
+    const GltfScene scene = LIMN_TRY(
+        is_person ? make_person_scene(options.assignments) : make_head_scene(options.name));
     LIMN_TRY(save_glb(options.out, scene));
     fmt::print(
         "{}: {} meshes, {} shapes\n", options.out, scene.meshes.size(),

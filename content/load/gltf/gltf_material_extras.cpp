@@ -2,6 +2,7 @@
 
 #include "ecs/field_access.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,11 @@ namespace {
 constexpr const char* kWrittenFields[] = {
     "detail",        "relief_depth", "relief_steps", "relief_refinements",
     "relief_shadow", "tessellation", "normal_mips",  "bump_shadow"};
+
+/// Likewise of shading models that glTF does not have, for which other programs use its own.
+constexpr const char* kModelFields[] = {"shading",    "specular",        "scatter",
+                                        "gloss",      "gloss_roughness", "roughness_across",
+                                        "scale_tilt", "hair_scatter"};
 
 const std::vector<FieldInfo>& material_fields() {
     return component_info<Material>().fields;
@@ -37,7 +43,18 @@ JsonValue written(const FieldInfo& field, const Material& material) {
     return write_field(field, reinterpret_cast<const std::byte*>(&material) + field.offset, {});
 }
 
+bool is_same(const JsonValue& a, const JsonValue& b) {
+    return a.text == b.text && std::ranges::equal(a.items, b.items, is_same);
+}
+
 tinygltf::Value value_of(const FieldInfo& field, const JsonValue& json) {
+    if (json.kind == JsonKind::Array) {
+        tinygltf::Value::Array items;
+        for (const JsonValue& item : json.items) {
+            items.emplace_back(item.number);
+        }
+        return tinygltf::Value(std::move(items));
+    }
     if (json.kind != JsonKind::Number) {
         return tinygltf::Value(json.text);
     }
@@ -63,16 +80,24 @@ Status read_material_extras(
     return read_struct(plain, material, location, {});
 }
 
+bool is_extra_model(ShadingModel model) {
+    return model == ShadingModel::Subsurface || model == ShadingModel::Hair;
+}
+
 tinygltf::Value::Object
 write_material_extras(const Material& material, const TextureWriter& texture) {
     const Material plain;
     tinygltf::Value::Object extras;
-    for (const char* const name : kWrittenFields) {
+    const auto write = [&](const char* name) {
         const FieldInfo& field = *find_field(material_fields(), name);
         const JsonValue json = written(field, material);
-        if (json.text != written(field, plain).text) {
+        if (!is_same(json, written(field, plain))) {
             extras.emplace(name, value_of(field, json));
         }
+    };
+    std::ranges::for_each(kWrittenFields, write);
+    if (is_extra_model(material.shading)) {
+        std::ranges::for_each(kModelFields, write);
     }
     if (material.relief_texture.image.index != kNoAsset) {
         extras.emplace("relief_texture", tinygltf::Value(texture(material.relief_texture)));

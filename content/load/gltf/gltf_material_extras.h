@@ -23,8 +23,12 @@ namespace limn {
     const JsonValue& limn, const JsonLocation& location,
     const std::function<TextureSlot(const std::string& name)>& texture, Material& material);
 
-/// The fields of surface detail that differ from those of a new material; `texture` writes a
-/// textureInfo. Empty: none differs.
+/// Whether it is a shading model that glTF does not have, and that extras keep: other programs see
+/// a material of glTF's own model.
+[[nodiscard]] bool is_extra_model(ShadingModel model);
+
+/// The fields of surface detail and of extra models that differ from those of a new material;
+/// `texture` writes a textureInfo. Empty: none differs.
 [[nodiscard]] tinygltf::Value::Object
 write_material_extras(const Material& material, const TextureWriter& texture);
 

@@ -521,9 +521,11 @@ class GlbWriter {
     }
 
     Status add_material(const Material& source) {
-        if (source.shading != ShadingModel::Pbr && source.shading != ShadingModel::Unlit) {
+        if (source.shading != ShadingModel::Pbr && source.shading != ShadingModel::Unlit
+            && !is_extra_model(source.shading)) {
             return fail(
-                "{}: found another shading model on the material {}, expected pbr or unlit",
+                "{}: found another shading model on the material {}, expected pbr or unlit, "
+                "subsurface or hair",
                 scene_.name, in_quotes(source.name));
         }
         tinygltf::Material material;
