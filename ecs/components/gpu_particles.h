@@ -118,11 +118,30 @@ struct GpuCollider {
     GpuShape shape{};       ///< of heights and meshes
 };
 
+/// How a birth is made whose place is not the emitter's.
+enum class GpuBirthKind : std::uint32_t {
+    None,     ///< it is not: where a volume has no point
+    Surface,  ///< the emitter's shape at a point of a ParticleSurface, at its instant of the step
+    Spawn,    ///< at a particle of another emitter, at the end of the step (ParticleSource)
+    Turned,   ///< likewise, with the shape turned
+    Drop,     ///< a drop of spray, at a random instant of the step
+};
+
+/// The place of a birth.
+struct GpuBirthPlace {
+    GpuBirthKind kind = GpuBirthKind::None;
+    Vec3 position = {0, 0, 0};  ///< in world space [m]
+    Vec3 velocity = {0, 0, 0};  ///< that is added; of a drop all of it [m/s]
+    Quat turn = {1, 0, 0, 0};   ///< of the emitter's shape: of Surface and Turned
+    float age = 0;              ///< at the end of the step: of Spawn and Turned [s]
+};
+
 /// A step for the GPU.
 struct GpuParticleStep {
     std::uint64_t first = 0;  ///< number of its first birth, of all time
     std::uint32_t count = 0;  ///< births
     std::vector<BirthRun> births{};
+    std::vector<GpuBirthPlace> places{};  ///< of its last births
     EmitterPose pose{};
     Vec3 inherited = {0, 0, 0};  ///< velocity that is added at birth [m/s]
     MotionStep motion{};
@@ -143,7 +162,8 @@ struct GpuParticles {
     std::vector<ParticleCohort> cohorts{};  ///< those that may live, oldest first
     std::vector<GpuParticleStep> steps{};   ///< the first `expired` of them are no longer needed
     std::size_t expired = 0;
-    std::uint64_t step = 0;   ///< number of the step after the last of `steps`
+    std::vector<GpuBirthPlace> spawns{};  ///< by particles of another emitter in this step
+    std::uint64_t step = 0;               ///< number of the step after the last of `steps`
     PhiloxCounter counter{};  ///< of the attributes of the oldest particle; its number counts
     PhiloxKey key{};          ///< likewise
 

@@ -7,8 +7,9 @@ namespace limn {
 // Techniques: particle.interparticle
 
 /// Particles of the emitter are balls of equal mass that bump into each other
-/// (particle.interparticle), not into those of other emitters. On the CPU only. In a crowd each
-/// collides with 64 others at most.
+/// (particle.interparticle), not into those of other emitters. In a crowd each collides with 64
+/// others at most. On the GPU all pairs of a pass move at once: two that meet part as on the CPU,
+/// crowds only on average.
 struct ParticleBalls {
     float radius = 0.05f;
     float bounce = 0.5f;

@@ -25,7 +25,7 @@ enum class BirthSurface : std::uint8_t {
 /// ahead, or away from `blast`; a piece at `blast` flies in a random direction; in a volume +y is
 /// the world's. Where a mesh is not closed along the vertical, it has no volume. Triangles without
 /// area or with coordinates that are not finite are skipped; if none is left, no particle is born,
-/// and `dropped` of the emitter's clock counts it. On the CPU only, and not with a ParticleSource.
+/// and `dropped` of the emitter's clock counts it. Not with a ParticleSource.
 struct ParticleSurface {
     BirthSurface on = BirthSurface::Mesh;
     Entity entity{};

@@ -81,8 +81,8 @@ LIMN_FIELDS(CurveKey) {
 }
 
 /// What simulates the particles of an emitter. Results are the same but for rounding. On the GPU,
-/// particles are neither saved nor sorted among those of other emitters, have no sources, surfaces,
-/// drops or lights, pass through water, and occupy the capacity for the longest possible lifetime.
+/// particles are neither saved nor sorted among those of other emitters, light nothing, give birth
+/// to no others, pass through water, and occupy the capacity for the longest possible lifetime.
 enum class ParticleExecutor : std::uint8_t {
     Auto,  ///< the GPU from a capacity of 262,144 on
     Cpu,
@@ -128,8 +128,8 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(
         executor,
         .doc =
-            "what simulates them; on the GPU without sources, surfaces, drops and lights, and they "
-            "pass through water",
+            "what simulates them; those on the GPU light nothing, give birth to no others and pass "
+            "through water",
         .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, drawn in each step", "1/s", 0, 1e7);

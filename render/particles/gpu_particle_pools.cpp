@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
@@ -60,6 +61,7 @@ struct StepParts {
     std::uint32_t run = 0;
     std::uint32_t force = 0;
     std::uint32_t collider = 0;
+    std::uint32_t place = 0;
 };
 
 void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<Vec4>& texels) {
@@ -81,7 +83,9 @@ void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<
         motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
     texels.emplace_back(motion.wrap_center, word(first.force));
     texels.emplace_back(motion.wrap_size, word(motion.forces.size()));
-    texels.emplace_back(word(first.collider), word(step.colliders.size()), 0.0f, 0.0f);
+    texels.emplace_back(
+        word(first.collider), word(step.colliders.size()), word(first.place),
+        word(step.count - step.places.size()));
 }
 
 Result<const gpu::Program*>
@@ -131,6 +135,41 @@ ParticleWindow sort_window(const GpuParticlePool& pool) {
     return {(pool.first + offset_of(pool)) / pool.stride, pool.count};
 }
 
+/// Balls that are skipped could not be bumped into, so a stride other than 1 has none.
+void set_balls(
+    const ParticleBalls* settings, const ParticleCollision* collision,
+    std::span<const GpuParticleStep> pending, std::uint64_t oldest, GpuParticlePool& pool) {
+    GpuBalls& balls = pool.balls;
+    balls.radius = settings != nullptr && !pool.closed_form && pool.stride == 1
+                       ? std::max(finite_or(settings->radius, 0), 0.0f)
+                       : 0.0f;
+    balls.steps.clear();
+    if (!(balls.radius > 0)) {
+        return;
+    }
+    balls.bounce = std::clamp(finite_or(settings->bounce, 0), 0.0f, 1.0f);
+    balls.wall_radius =
+        collision != nullptr ? std::max(finite_or(collision->radius, 0), 0.0f) : -1.0f;
+    for (const GpuParticleStep& step : pending) {
+        const std::uint64_t end = step.first + step.count;
+        balls.steps.emplace_back(
+            static_cast<std::uint32_t>(end > oldest ? end - oldest : 0), step.motion.step.dt);
+    }
+    const std::uint32_t size = sort_size(pool.capacity);
+    if (balls.size != size) {
+        const std::size_t slots = pool.capacity;
+        const auto make = [](const char* label, std::size_t bytes) {
+            return gpu::Buffer(label, bytes, gpu::BufferUse::GpuOnly);
+        };
+        balls.entries = make("ball cells", size * sizeof(std::uint64_t));
+        balls.near = make("ball neighbors", slots * layout::kBallNearWords * sizeof(std::uint32_t));
+        for (gpu::Buffer& buffer : balls.motion) {
+            buffer = make("ball motion", slots * 2 * sizeof(Vec4));
+        }
+        balls.size = size;
+    }
+}
+
 }  // namespace
 
 std::uint32_t particle_stride(float fraction) {
@@ -158,6 +197,7 @@ std::vector<Vec4> pack_particle_steps(
         next.force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
         next.collider +=
             static_cast<std::uint32_t>(step.colliders.size()) * layout::kColliderTexels;
+        next.place += static_cast<std::uint32_t>(step.places.size()) * layout::kPlaceTexels;
     }
     layout.steps = static_cast<int>(kept.size() - skipped);
     layout.runs = static_cast<int>(texels.size());
@@ -183,6 +223,14 @@ std::vector<Vec4> pack_particle_steps(
             texels.emplace_back(one.half, word(static_cast<std::uint32_t>(one.kind)));
             texels.emplace_back(word(shapes.find_or_add(one.shape)), 0.0f, 0.0f, 0.0f);
             layout.has_shapes = layout.has_shapes || one.shape != nullptr;
+        }
+    }
+    layout.places = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        for (const GpuBirthPlace& one : step.places) {
+            texels.emplace_back(one.position, one.age);
+            texels.emplace_back(one.velocity, word(static_cast<std::uint32_t>(one.kind)));
+            texels.emplace_back(one.turn.x, one.turn.y, one.turn.z, one.turn.w);
         }
     }
     return texels;
@@ -306,7 +354,7 @@ bool GpuParticlePools::collides_with_depth() const {
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
     std::uint32_t look, std::optional<std::uint32_t> sort_passes,
-    const ParticleCollision* collision, std::uint32_t stride) {
+    const ParticleCollision* collision, std::uint32_t stride, const ParticleBalls* balls) {
     std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
     if (found == nullptr) {
         found = std::make_unique<GpuParticlePool>();
@@ -344,6 +392,7 @@ void GpuParticlePools::add(
         pool.closed_form = step.closed_form;
         pool.gravity = step.gravity;
     }
+    set_balls(balls, collision, pending, particles.oldest(), pool);
     const bool closed_form = pool.closed_form;
     const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
     pool.collide_depth = depth > 0 && !closed_form ? depth : 0.0f;
@@ -356,9 +405,9 @@ void GpuParticlePools::add(
 /// Dispatches the update of the particles born before the steps to simulate, and of those born
 /// during them.
 void GpuParticlePools::move(
-    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth) {
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth, int only_step) {
     const bool collides = has_depth && pool.collide_depth > 0;
-    const bool is_plain_step = pool.plain.has_value() && !collides;
+    const bool is_plain_step = pool.plain.has_value() && !collides && only_step < 0;
     const Programs* const programs = find_programs(device, pool.layout.has_shapes, collides);
     if (programs == nullptr) {
         return;
@@ -382,10 +431,12 @@ void GpuParticlePools::move(
         program.set("stride", pool.stride);
         program.set("offset", offset_of(pool));
         program.set("first_slot", first_slot);
-        program.set("step_count", pool.layout.steps);
+        program.set("first_step", std::max(only_step, 0));
+        program.set("step_count", only_step >= 0 ? 1 : pool.layout.steps);
         program.set("runs", pool.layout.runs);
         program.set("forces", pool.layout.forces);
         program.set("colliders", pool.layout.colliders);
+        program.set("places", pool.layout.places);
         program.set("look", pool.look);
         program.set("back", back);
         program.set("closed_form", pool.closed_form ? 1 : 0);
@@ -416,6 +467,95 @@ void GpuParticlePools::move(
     dispatch_parts(*programs->births, pool.old, pool.count);
 }
 
+bool GpuParticlePools::can_collide_balls(gpu::Device& device) {
+    if (ball_programs_.apply != nullptr) {
+        return true;
+    }
+    const auto load = [&](std::vector<gpu::ShaderDefine> defines) -> const gpu::Program* {
+        const Result<const gpu::Program*> program = device.shaders().load(
+            {.compute = "particle_balls.comp", .defines = std::move(defines)});
+        if (!program) {
+            log_error("{}", program.error().message);
+            return nullptr;
+        }
+        return *program;
+    };
+    BallPrograms made = {
+        .keys = load({{"KEYS"}}),
+        .near = load({{"NEAR"}}),
+        .push = {load({{"PUSH"}}), load({{"PUSH"}, {"SHAPES"}})},
+        .speed = load({{"SPEED"}}),
+        .apply = load({})};
+    const bool complete = made.keys != nullptr && made.near != nullptr && made.push[0] != nullptr
+                          && made.push[1] != nullptr && made.speed != nullptr
+                          && made.apply != nullptr && can_sort(device);
+    if (complete) {
+        ball_programs_ = made;
+    }
+    return complete;
+}
+
+void GpuParticlePools::move_balls(
+    gpu::Device& device, GpuParticlePool& pool, float back, bool has_depth) {
+    constexpr int kBallPasses = 32;   // over all pairs: how many balls far a push spreads
+    constexpr int kSpeedPasses = 12;  // likewise, of speeds
+    GpuBalls& balls = pool.balls;
+    int read = 1;  // the first pass writes motion[0]
+    const auto dispatch = [&](const gpu::Program& program, std::size_t step, std::uint32_t count,
+                              int is_first = 0) {
+        device.storage_barrier();
+        device.use(program);
+        pool.steps.bind(device, layout::kParticleStepsUnit);
+        if (pool.layout.has_shapes) {
+            shapes_.bind(device);
+        }
+        device.bind_storage(layout::kParticleStateBinding, pool.state);
+        device.bind_storage(layout::kBallNearBinding, balls.near);
+        device.bind_storage(layout::kParticleInstancesBinding, pool.instances);
+        device.bind_storage(layout::kBallEntriesBinding, balls.entries);
+        device.bind_storage(layout::kBallReadBinding, balls.motion[read]);
+        device.bind_storage(layout::kBallWriteBinding, balls.motion[1 - read]);
+        program.set("count", pool.count);
+        program.set("born", balls.steps[step].first);
+        program.set("first_slot", pool.first % pool.capacity);
+        program.set("capacity", pool.capacity);
+        program.set("size", sort_size(pool.count));
+        program.set("radius", balls.radius);
+        program.set("bounce", balls.bounce);
+        program.set("dt", balls.steps[step].second);
+        program.set("back", back);
+        program.set(
+            "step_texel",
+            static_cast<int>(layout::kEmitterTexels + step * std::size_t{layout::kStepTexels}));
+        program.set("colliders", pool.layout.colliders);
+        program.set("wall_radius", balls.wall_radius);
+        program.set("is_first", is_first);
+        device.dispatch((count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+        read = 1 - read;
+    };
+    for (std::size_t step = 0; step < balls.steps.size(); ++step) {
+        device.storage_barrier();
+        move(device, pool, back, has_depth, static_cast<int>(step));
+        if (!(balls.steps[step].second > 0) || pool.count == 0) {
+            continue;
+        }
+        const std::uint32_t size = sort_size(pool.count);
+        dispatch(*ball_programs_.keys, step, size);
+        device.storage_barrier();
+        device.bind_storage(layout::kSortEntriesBinding, balls.entries);
+        sort_entries(device, *sort_programs_, size);
+        dispatch(*ball_programs_.near, step, pool.count);
+        for (int pass = 0; pass < kBallPasses; ++pass) {
+            dispatch(*ball_programs_.push[pool.layout.has_shapes ? 1 : 0], step, pool.count);
+        }
+        for (int pass = 0; pass <= kSpeedPasses; ++pass) {
+            dispatch(*ball_programs_.speed, step, pool.count, pass == 0 ? 1 : 0);
+        }
+        dispatch(*ball_programs_.apply, step, pool.count);
+    }
+    device.storage_barrier();
+}
+
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
     if (std::exchange(updated_, true)) {
         return;
@@ -444,8 +584,13 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
                     layout::kViewBinding, depth.camera.buffer, depth.camera.offset,
                     depth.camera.size);
             }
+            const bool has_depth = depth.depth != nullptr;
             for (const auto& [entity, pool] : pools_) {
-                move(device, *pool, back, depth.depth != nullptr);
+                if (!pool->balls.steps.empty() && can_collide_balls(device)) {
+                    move_balls(device, *pool, back, has_depth);
+                } else {
+                    move(device, *pool, back, has_depth);
+                }
             }
         });
     for (const auto& [entity, found] : pools_) {

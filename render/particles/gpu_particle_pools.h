@@ -13,10 +13,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace limn {
 
+struct ParticleBalls;
 struct ParticleCollision;
 struct ParticleEmitter;
 class World;
@@ -35,7 +37,21 @@ struct ParticleStepTexels {
     int runs = 0;             ///< texel of the first run of births
     int forces = 0;           ///< texel of the first force
     int colliders = 0;        ///< texel of the first collider
+    int places = 0;           ///< texel of the first place of a birth
     bool has_shapes = false;  ///< some colliders are height fields or meshes
+};
+
+/// What balls that bump into each other need (particle_balls.comp).
+struct GpuBalls {
+    gpu::Buffer entries{};    ///< key and index of each
+    gpu::Buffer near{};       ///< neighbors of each
+    gpu::Buffer motion[2]{};  ///< positions and velocities, read and written in turn
+    std::uint32_t size = 0;   ///< entries
+    float radius = 0;         ///< of this frame [m]; 0: none
+    float bounce = 0;
+    float wall_radius = -1;  ///< against colliders [m]; < 0: they hit none
+    /// Of each step to simulate: particles from the oldest on that are born, and its length [s].
+    std::vector<std::pair<std::uint32_t, float>> steps{};
 };
 
 struct GpuParticlePool {
@@ -62,6 +78,7 @@ struct GpuParticlePool {
     /// The step to simulate, if it is the only one and has only gravity and drag.
     std::optional<ParticleStep> plain{};
     float collide_depth = 0;  ///< as ParticleCollision::collide_depth
+    GpuBalls balls{};
 };
 
 /// The smallest power of two, up to 1024, that leaves at most this fraction of the particles.
@@ -120,7 +137,8 @@ class GpuParticlePools {
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
         const GpuParticles& particles, std::uint32_t look,
         std::optional<std::uint32_t> sort_passes = std::nullopt,
-        const ParticleCollision* collision = nullptr, std::uint32_t stride = 1);
+        const ParticleCollision* collision = nullptr, std::uint32_t stride = 1,
+        const ParticleBalls* balls = nullptr);
     /// After all emitters have been added: drops the pools of others.
     void drop_unused();
     /// Adds the passes that move and sort the particles; only the first call in a frame counts.
@@ -143,11 +161,26 @@ class GpuParticlePools {
     /// Those that collide with shapes or with depth are loaded when they are first needed; null if
     /// they cannot be.
     const Programs* find_programs(gpu::Device& device, bool has_shapes, bool has_depth);
-    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth);
+    /// Moves particles of all steps, or those of a step alone.
+    void move(
+        gpu::Device& device, const GpuParticlePool& pool, float back, bool has_depth,
+        int only_step = -1);
+    bool can_collide_balls(gpu::Device& device);
+    /// Step by step, with the collisions of balls after each.
+    void move_balls(gpu::Device& device, GpuParticlePool& pool, float back, bool has_depth);
 
     Programs programs_[2][2]{};            ///< by whether they collide with shapes, with depth
     const gpu::Program* plain_ = nullptr;  ///< for steps with only gravity and drag
     GpuShapeList shapes_{};
+
+    struct BallPrograms {
+        const gpu::Program* keys = nullptr;
+        const gpu::Program* near = nullptr;
+        const gpu::Program* push[2]{};  ///< by whether some colliders are shapes
+        const gpu::Program* speed = nullptr;
+        const gpu::Program* apply = nullptr;
+    };
+    BallPrograms ball_programs_{};                         ///< loaded when they are first needed
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
     bool updated_ = false;                                 ///< in this frame

@@ -34,28 +34,6 @@ void make_sort_buffers(std::uint32_t size, GpuParticleSort& sort) {
     sort.shown.reset();
 }
 
-/// A whole sort; consecutive passes within the entries of a work group are one dispatch.
-void sort_all(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size) {
-    const auto sort_local = [&](std::uint32_t run, std::uint32_t last_run) {
-        device.use(*programs.local);
-        programs.local->set("run", run);
-        programs.local->set("last_run", last_run);
-        device.dispatch(size / kLocal);
-        device.storage_barrier();
-    };
-    sort_local(2, kLocal);
-    for (std::uint32_t run = 2 * kLocal; run <= size; run *= 2) {
-        device.use(*programs.pass);
-        programs.pass->set("run", run);
-        for (std::uint32_t partner = run / 2; partner >= kLocal; partner /= 2) {
-            programs.pass->set("partner", partner);
-            device.dispatch(size / 2 / kSortGroup);
-            device.storage_barrier();
-        }
-        sort_local(run, run);
-    }
-}
-
 void sort_some(
     gpu::Device& device, const ParticleSortPrograms& programs, const ParticleSortPlan& plan) {
     device.use(*programs.pass);
@@ -130,6 +108,28 @@ Result<ParticleSortPrograms> ParticleSortPrograms::create(gpu::Device& device) {
     return programs;
 }
 
+// Consecutive passes within the entries of a work group are one dispatch.
+void sort_entries(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size) {
+    const auto sort_local = [&](std::uint32_t run, std::uint32_t last_run) {
+        device.use(*programs.local);
+        programs.local->set("run", run);
+        programs.local->set("last_run", last_run);
+        device.dispatch(size / kLocal);
+        device.storage_barrier();
+    };
+    sort_local(2, kLocal);
+    for (std::uint32_t run = 2 * kLocal; run <= size; run *= 2) {
+        device.use(*programs.pass);
+        programs.pass->set("run", run);
+        for (std::uint32_t partner = run / 2; partner >= kLocal; partner /= 2) {
+            programs.pass->set("partner", partner);
+            device.dispatch(size / 2 / kSortGroup);
+            device.storage_barrier();
+        }
+        sort_local(run, run);
+    }
+}
+
 void run_particle_sort(
     PassContext& context, const ParticleSortPrograms& programs, const ParticleWindow& now,
     const gpu::Buffer& instances, const ParticleSortView& view, GpuParticleSort& sort) {
@@ -152,7 +152,7 @@ void run_particle_sort(
         device.storage_barrier();
     }
     if (plan.first_pass == 0 && ended) {
-        sort_all(device, programs, plan.size);
+        sort_entries(device, programs, plan.size);
     } else {
         sort_some(device, programs, plan);
     }

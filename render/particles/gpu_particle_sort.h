@@ -76,6 +76,9 @@ struct ParticleSortPrograms {
     [[nodiscard]] static Result<ParticleSortPrograms> create(gpu::Device& device);
 };
 
+/// Sorts `size` = sort_size() entries, key and index, that are bound to kSortEntriesBinding.
+void sort_entries(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size);
+
 /// Executes the plan for the particles in `instances`.
 void run_particle_sort(
     PassContext& context, const ParticleSortPrograms& programs, const ParticleWindow& now,

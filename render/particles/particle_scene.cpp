@@ -2,6 +2,7 @@
 
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
@@ -350,15 +351,17 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& s
     world
         .query<
             const ParticleLook, const ParticleEmitter, const GpuParticles,
-            Optional<const ParticleCollision>>()
+            Optional<const ParticleCollision>, Optional<const ParticleBalls>>()
         .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
-                  const GpuParticles& particles, const ParticleCollision* collision) {
+                  const GpuParticles& particles, const ParticleCollision* collision,
+                  const ParticleBalls* balls) {
             if (scene.looks.size() < kMaxLooks) {
                 const std::uint32_t index = add_look(frame, enlarged(look, stride), scene);
                 light_at_corners(scene.looks[index]);
                 add_pull(world, entity, index, scene);
                 gpu.add(
-                    frame, entity, emitter, particles, index, sort_passes(look), collision, stride);
+                    frame, entity, emitter, particles, index, sort_passes(look), collision, stride,
+                    balls);
                 if (look.culling == ParticleCulling::Emitter) {
                     scene.extents[index].group = shape_in_world(world, entity, alpha);
                 }

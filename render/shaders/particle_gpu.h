@@ -80,7 +80,7 @@ const uint kParticleShadowTexels = 5u;
 //   6  of collisions: bounce, friction, radius, action (word; 0: none)
 // then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (fractions of the step), number;
 // then the forces of fields: origin, kind (word); axis, strength times dt; speed, radius;
-// then the colliders, see particle_collide.glsl.
+// then the colliders, see particle_collide.glsl; then the places of births: position, age; velocity, kind (word); turn.
 const uint kEmitterTexels = 7u;
 //   0  number of its first birth (low word), births, first run, runs (words)
 //   1  acceleration times dt; dt
@@ -94,10 +94,11 @@ const uint kEmitterTexels = 7u;
 //  14  orbit; loss of speed; seed of the turbulence (word); 0
 //  15  center of the box that particles stay in; first texel of the forces of fields (word)
 //  16  its extents; number of forces (word)
-//  17  first texel of the colliders, number of them (words)
+//  17  first texel of the colliders, number of them; first texel of the places, index of the first birth that has one (words)
 const uint kStepTexels = 18u;
 const uint kColliderTexels = 5u;
 const uint kForceTexels = 3u;
+const uint kPlaceTexels = 3u;
 const uint kParticleGroup = 128u;  // particles of a work group
 
 // Bindings: of what draws particles,
@@ -129,6 +130,11 @@ const uint kParticleShapesUnit = 2u;
 const uint kParticleStateBinding = 0u;
 const uint kParticleBitsBinding = 1u;
 const uint kParticleInstancesBinding = 2u;
+const uint kBallNearBinding = 1u;
+const uint kBallEntriesBinding = 3u;
+const uint kBallReadBinding = 4u;
+const uint kBallWriteBinding = 5u;
+const uint kBallNearWords = 32u;  // of each ball
 // and of what sorts them.
 const uint kSortEntriesBinding = 0u;
 const uint kSortInstancesBinding = 1u;

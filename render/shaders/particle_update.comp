@@ -31,10 +31,12 @@ uniform uint end;         // one past the last
 uniform uint stride;      // only every stride-th particle is simulated
 uniform uint offset;      // from the oldest particle to the oldest simulated one
 uniform uint first_slot;  // of the oldest simulated one, on this lap around the ring: may wrap below 0
+uniform int first_step;   // to simulate, of those in `steps`
 uniform int step_count;   // steps to simulate
 uniform int runs;         // texel of the first run of births
 uniform int forces;       // texel of the first force of a field
 uniform int colliders;    // texel of the first collider
+uniform int places;       // texel of the first place of a birth
 uniform uint look;
 uniform int closed_form;  // states are those at birth
 uniform vec3 gravity;
@@ -188,8 +190,45 @@ void rewind(inout Particle p, float at, int texel) {
     p.age = -ahead;
 }
 
-// Particle `number` (low word), the birth `index` of the step at `texel`.
-Particle draw_birth(uint number, uint index, int texel, uvec4 births) {
+// Where a birth is, if not at the emitter: GpuBirthPlace.
+const uint kAtEmitter = 0xffffffffu, kNoBirth = 0u, kOnSurface = 1u, kSpawn = 2u, kTurnedSpawn = 3u, kDrop = 4u;
+struct Place {
+    uint kind;
+    vec3 position;
+    float age;
+    vec3 velocity;
+    vec4 turn;  // quaternion
+};
+
+Place read_place(int texel, uint index) {
+    uvec4 range = floatBitsToUint(texelFetch(steps, texel + 17));  // of places: z first texel, w first birth that has one
+    if (index < range.w) {
+        return Place(kAtEmitter, vec3(0.0), 0.0, vec3(0.0), vec4(0.0, 0.0, 0.0, 1.0));
+    }
+    int at = places + int(range.z + (index - range.w) * kPlaceTexels);
+    vec4 position_age = texelFetch(steps, at);
+    vec4 velocity_kind = texelFetch(steps, at + 1);
+    return Place(
+        floatBitsToUint(velocity_kind.w), position_age.xyz, position_age.w, velocity_kind.xyz, texelFetch(steps, at + 2));
+}
+
+// The same scale, turned by a quaternion instead.
+Rows turned_to(Rows m, vec4 q) {
+    vec3 size;
+    for (int i = 0; i < 3; ++i) {
+        size[i] = length(vec3(m.row[0][i], m.row[1][i], m.row[2][i]));
+    }
+    vec3 x = 1.0 - 2.0 * vec3(q.y * q.y + q.z * q.z, q.x * q.x + q.z * q.z, q.x * q.x + q.y * q.y);
+    vec3 sum = 2.0 * vec3(q.y * q.z, q.x * q.z, q.x * q.y);
+    vec3 turn = 2.0 * q.w * q.xyz;
+    m.row[0] = vec4(size * vec3(x.x, sum.z - turn.z, sum.y + turn.y), 0.0);
+    m.row[1] = vec4(size * vec3(sum.z + turn.z, x.y, sum.x - turn.x), 0.0);
+    m.row[2] = vec4(size * vec3(sum.y - turn.y, sum.x + turn.x, x.z), 0.0);
+    return m;
+}
+
+// Instant of birth `index` of a step whose runs are in `births`, as a fraction of the step.
+float instant_of(uint index, uvec4 births) {
     vec4 run = vec4(0.0);
     for (uint i = 0u; i < births.w; ++i) {
         run = texelFetch(steps, runs + int(births.z + i));
@@ -199,42 +238,67 @@ Particle draw_birth(uint number, uint index, int texel, uvec4 births) {
         }
         index -= count;
     }
-    float at = clamp(run.x + float(index) * run.y, 0.0, 1.0);
+    return clamp(run.x + float(index) * run.y, 0.0, 1.0);
+}
 
+// Particle `number` (low word), the birth `index` of the step at `texel`. `at_end`: it is born at the end of the step.
+Particle draw_birth(uint number, uint index, int texel, uvec4 births, out bool at_end) {
     uvec4 seed = floatBitsToUint(texelFetch(steps, 0));
     vec4 form = texelFetch(steps, 1);
     vec4 size_speed = texelFetch(steps, 2);
     vec4 rest = texelFetch(steps, 3);
     Random random = Random(uvec4(0u, number, seed.zw), seed.xy, uvec4(0u), 0u);
+    Place place = read_place(texel, index);
+    at_end = place.kind == kSpawn || place.kind == kTurnedSpawn;
+    float at = place.kind == kDrop ? next_fraction(random) : at_end ? 1.0 : instant_of(index, births);
     Rows pose = pose_at(texel, at);
-    vec3 local = sample_shape(floatBitsToUint(form.y), size_speed.xyz, random);
-    bool is_radial = floatBitsToUint(form.z) == kRadial;
-    vec3 direction =
-        is_radial && local != vec3(0.0) ? normalize(local) : sample_cone(is_radial ? -1.0 : form.w, random);
-    vec3 aim = transform_vector(pose, direction);
-    float length_of_aim = length(aim);
-    aim = length_of_aim > 0.0 ? aim / length_of_aim : vec3(0.0, 1.0, 0.0);
-
+    vec3 origin = vec3(pose.row[0].w, pose.row[1].w, pose.row[2].w);
+    if (place.kind != kAtEmitter) {
+        origin = place.position;
+    }
+    if (place.kind == kOnSurface || place.kind == kTurnedSpawn) {
+        pose = turned_to(pose, place.turn);
+    }
     Particle p;
-    p.velocity = aim * (size_speed.w + rest.x * next_signed(random)) + texelFetch(steps, texel + 9).xyz;
-    p.life = rest.y + rest.z * next_signed(random);
-    p.look_bits = next_word(random);
-    vec3 size_spread = texelFetch(steps, 4).xyz;
-    vec3 velocity_spread = texelFetch(steps, 5).xyz;
-    if (size_spread != vec3(0.0)) {
-        local += size_spread * next_vector(random);
+    if (place.kind == kDrop) {
+        p.position = place.position;
+        p.velocity = place.velocity;
+        p.life = rest.y + rest.z * next_signed(random);
+        p.look_bits = next_word(random);
+    } else {
+        vec3 local = sample_shape(floatBitsToUint(form.y), size_speed.xyz, random);
+        bool is_radial = floatBitsToUint(form.z) == kRadial;
+        vec3 direction =
+            is_radial && local != vec3(0.0) ? normalize(local) : sample_cone(is_radial ? -1.0 : form.w, random);
+        vec3 aim = transform_vector(pose, direction);
+        float length_of_aim = length(aim);
+        aim = length_of_aim > 0.0 ? aim / length_of_aim : vec3(0.0, 1.0, 0.0);
+        vec3 added = place.kind == kAtEmitter ? texelFetch(steps, texel + 9).xyz : place.velocity;
+        p.velocity = aim * (size_speed.w + rest.x * next_signed(random)) + added;
+        p.life = rest.y + rest.z * next_signed(random);
+        p.look_bits = next_word(random);
+        vec3 size_spread = texelFetch(steps, 4).xyz;
+        vec3 velocity_spread = texelFetch(steps, 5).xyz;
+        if (size_spread != vec3(0.0)) {
+            local += size_spread * next_vector(random);
+        }
+        if (velocity_spread != vec3(0.0)) {
+            p.velocity += transform_vector(pose, velocity_spread * next_vector(random));
+        }
+        p.position = transform_vector(pose, local) + origin;
     }
-    if (velocity_spread != vec3(0.0)) {
-        p.velocity += transform_vector(pose, velocity_spread * next_vector(random));
-    }
-    p.position = transform_vector(pose, local) + vec3(pose.row[0].w, pose.row[1].w, pose.row[2].w);
-    if (closed_form != 0) {
+    if (at_end) {
+        p.age = place.age;
+        if (closed_form == 0) {
+            p.position += p.velocity * place.age;
+        }
+    } else if (closed_form != 0) {
         p.age = -at * texelFetch(steps, texel + 1).w;
     } else {
         rewind(p, at, texel);
     }
     float sum = dot(p.position + p.velocity, vec3(1.0)) + p.life;
-    if (!is_finite(sum) || abs(sum) >= 1e30) {  // by extreme settings: never visible
+    if (place.kind == kNoBirth || !is_finite(sum) || abs(sum) >= 1e30) {  // by extreme settings: never visible
         p.position = vec3(0.0);
         p.velocity = vec3(0.0);
         p.life = 0.0;
@@ -397,7 +461,7 @@ void main() {
     move(p);
 #else
     for (int i = 0; i < step_count; ++i) {
-        int texel = int(kEmitterTexels) + i * int(kStepTexels);
+        int texel = int(kEmitterTexels) + (first_step + i) * int(kStepTexels);
 #ifndef OLD
         uint number = first + offset + moved * stride;
         uvec4 births = floatBitsToUint(texelFetch(steps, texel));
@@ -406,7 +470,11 @@ void main() {
             continue;  // not born yet
         }
         if (since >= 0) {
-            p = draw_birth(number, uint(since), texel, births);
+            bool at_end;
+            p = draw_birth(number, uint(since), texel, births, at_end);
+            if (at_end) {
+                continue;
+            }
         }
 #endif
         move(p, texel);

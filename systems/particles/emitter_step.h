@@ -31,14 +31,19 @@ using EmitterQuery = Query<
     Optional<const ParticleCollision>, Optional<const ParticleWrap>, Optional<const ParticleLook>,
     Optional<const ParticleLight>, ParticlePool>;
 
+/// Emitters on the GPU that are born by the particles of others.
+using GpuChildren = Query<const ParticleEmitter, const ParticleSource, GpuParticles>;
+
 /// The components that refer to the particles of an emitter, as one parameter of a system.
 struct ParticleFollowers {
     Query<const ParticleSource> sources;
     Query<const Trail> trails;
+    GpuChildren gpu_children;
 };
 template <>
 struct SystemParam<ParticleFollowers>
-    : ParamGroup<ParticleFollowers, Query<const ParticleSource>, Query<const Trail>> {};
+    : ParamGroup<ParticleFollowers, Query<const ParticleSource>, Query<const Trail>, GpuChildren> {
+};
 
 /// Surfaces that particles are born on, as one parameter of a system.
 struct BirthSurfaces {

@@ -46,19 +46,65 @@ void drop_expired(const ParticleEmitter& emitter, float dt, GpuParticles& partic
     }
 }
 
-/// Records a step with its births.
-void record_step(
-    const ParticleEmitter& emitter, float scale, GpuParticleStep step, Random random,
+/// What is born in a step beside the births of the rate and of bursts, and where those are.
+struct StepBirths {
+    std::uint64_t seed = 0;
+    std::uint64_t subject = 0;
+    float scale = 1;                         ///< on the rate
+    bool by_others = false;                  ///< by a ParticleSource alone
+    const SurfaceSource* surface = nullptr;  ///< null: at the emitter
+    const SprayDrops* drops = nullptr;       ///< or null
+};
+
+void find_step_births(
+    const ParticleEmitter& emitter, const StepBirths& births, Random random, GpuParticleStep& step,
     GpuParticles& particles) {
     const float dt = step.motion.step.dt;
-    drop_expired(emitter, dt, particles);
     const std::uint64_t window = particles.clock.born - particles.oldest();
-    const std::size_t room = birth_room(emitter, window, particles.clock);
-    step.first = particles.clock.born;
-    find_births(emitter, scale, dt, room, random, particles.clock, step.births);
+    if (births.by_others) {
+        step.places.swap(particles.spawns);
+        step.count = static_cast<std::uint32_t>(step.places.size());
+        return;
+    }
+    EmitterClock& clock = particles.clock;
+    find_births(
+        emitter, births.scale, dt, birth_room(emitter, window, clock), random, clock, step.births);
     for (const BirthRun& run : step.births) {
         step.count += run.count;
     }
+    if (births.surface != nullptr && step.count > 0) {
+        step.places = place_on_surface(
+            *births.surface, dt, births.seed, births.subject, step.first, step.births);
+        if (step.places.empty()) {
+            clock.dropped += step.count;
+            step.births.clear();
+            step.count = 0;
+        }
+        clock.dropped += static_cast<std::uint64_t>(
+            std::count_if(step.places.begin(), step.places.end(), [](const GpuBirthPlace& place) {
+                return place.kind == GpuBirthKind::None;
+            }));
+    }
+    if (births.drops != nullptr && emitter.active) {
+        EmitterClock then = clock;  // after the other births
+        then.born += step.count;
+        const std::size_t before = step.places.size();
+        place_drops(
+            emitter, births.drops->drops, birth_room(emitter, window + step.count, then), clock,
+            step.places);
+        step.count += static_cast<std::uint32_t>(step.places.size() - before);
+    }
+}
+
+/// Records a step with its births.
+void record_step(
+    const ParticleEmitter& emitter, const StepBirths& births, GpuParticleStep step, Random random,
+    GpuParticles& particles) {
+    const float dt = step.motion.step.dt;
+    drop_expired(emitter, dt, particles);
+    step.first = particles.clock.born;
+    find_step_births(emitter, births, random, step, particles);
+    particles.spawns.clear();
     particles.time += static_cast<double>(dt);
     if (step.count > 0) {
         particles.cohorts.push_back({step.first, particles.time});
@@ -93,16 +139,19 @@ void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const ParticleCollision>,
-        Optional<const ParticleWrap>, GpuParticles>
+        Optional<const ParticleWrap>, Optional<const ParticleSource>,
+        Optional<const ParticleSurface>, Optional<const ParticleMesh>, Optional<const SprayDrops>,
+        GpuParticles>
         emitters,
-    Res<const ParticleObstacles> obstacles, Res<GpuShapes> shapes,
+    BirthSurfaces surfaces, Res<const ParticleObstacles> obstacles, Res<GpuShapes> shapes,
     ParticleEnvironment environment) {
     const StepContext context = find_step_context(environment);
     std::optional<std::vector<GpuCollider>> colliders;  // found when they are first needed
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
-                      GpuParticles& particles) {
+                      const ParticleSource* source, const ParticleSurface* surface,
+                      const ParticleMesh* mesh, const SprayDrops* drops, GpuParticles& particles) {
         const std::uint64_t subject = subject_of(emitter, entity);
         GpuParticleStep step;
         step.pose = emitter_pose(now, previous);
@@ -114,15 +163,27 @@ void record_gpu_particles(
             }
             step.colliders = *colliders;
         }
-        const float scale = screen_coverage(emitter, now.world, context.eye);
-        if (is_unused(particles.clock)) {
+        std::optional<SurfaceSource> on;
+        if (surface != nullptr && source == nullptr) {
+            on = find_surface_source(
+                *surface, mesh, entity, step.pose, surfaces.meshes, surfaces.poses, surfaces.morphs,
+                *surfaces.assets);
+        }
+        StepBirths births = {
+            .seed = context.seed,
+            .subject = subject,
+            .scale = screen_coverage(emitter, now.world, context.eye),
+            .by_others = source != nullptr,
+            .surface = on ? &*on : nullptr};
+        if (is_unused(particles.clock) && source == nullptr) {
             for (int i = 0; i < prewarm_steps(emitter, context.dt); ++i) {
                 const Random random = prewarm_random(context.seed, subject, i);
-                record_step(emitter, scale, step, random, particles);
+                record_step(emitter, births, step, random, particles);
             }
         }
+        births.drops = drops;
         const Random random = births_random(context.seed, subject, context.time.frame);
-        record_step(emitter, scale, step, random, particles);
+        record_step(emitter, births, step, random, particles);
         const Random oldest = attributes_random(context.seed, subject, particles.oldest());
         particles.counter = oldest.counter();
         particles.key = oldest.key();

@@ -355,4 +355,53 @@ void add_drops(
     }
 }
 
+std::vector<GpuBirthPlace> place_on_surface(
+    const SurfaceSource& surface, float dt, std::uint64_t seed, std::uint64_t subject,
+    std::uint64_t first, const std::vector<BirthRun>& births) {
+    thread_local SurfaceTable table;  // its memory is reused
+    std::vector<GpuBirthPlace> places;
+    if (!fill_surface_table(surface, table)) {
+        return places;
+    }
+    const float inherit = finite_or(surface.surface->inherit, 0);
+    for (const BirthRun& run : births) {
+        for (std::uint32_t i = 0; i < run.count; ++i) {
+            const std::uint64_t number = first + places.size();
+            Random random = surface_random(seed, subject, number);
+            const auto point = surface_point(surface, table, number, run.at(i), dt, random);
+            places.push_back(
+                point ? GpuBirthPlace{
+                            .kind = GpuBirthKind::Surface,
+                            .position = point->position,
+                            .velocity = point->velocity * inherit,
+                            .turn = point->turn}
+                      : GpuBirthPlace{});
+        }
+    }
+    return places;
+}
+
+void place_drops(
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, std::size_t room,
+    EmitterClock& clock, std::vector<GpuBirthPlace>& places) {
+    const std::size_t count = std::min(drops.size(), room);
+    clock.dropped += drops.size() - count;
+    for (std::size_t i = 0; i < count; ++i) {
+        places.push_back(
+            {.kind = GpuBirthKind::Drop,
+             .position = drops[i].position,
+             .velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1)});
+    }
+}
+
+GpuBirthPlace place_spawn(const ParticleSpawn& spawn) {
+    const bool is_turned = spawn.axis != Vec3(0);
+    return {
+        .kind = is_turned ? GpuBirthKind::Turned : GpuBirthKind::Spawn,
+        .position = spawn.position,
+        .velocity = spawn.velocity,
+        .turn = is_turned ? Quat(Vec3(0, 1, 0), spawn.axis) : Quat(1, 0, 0, 0),
+        .age = spawn.age};
+}
+
 }  // namespace limn

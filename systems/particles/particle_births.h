@@ -63,4 +63,18 @@ void add_spawns(
     const ParticleEmitter& emitter, const Affine& world, const std::vector<ParticleSpawn>& spawns,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
+// ---- places of births on the GPU, which draws the rest itself
+
+/// Those of births `first`, `first` + 1 ... on a surface; empty if nothing can be born there.
+[[nodiscard]] std::vector<GpuBirthPlace> place_on_surface(
+    const SurfaceSource& surface, float dt, std::uint64_t seed, std::uint64_t subject,
+    std::uint64_t first, const std::vector<BirthRun>& births);
+
+/// Those of at most `room` drops; the others are added to `clock.dropped`.
+void place_drops(
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, std::size_t room,
+    EmitterClock& clock, std::vector<GpuBirthPlace>& places);
+
+[[nodiscard]] GpuBirthPlace place_spawn(const ParticleSpawn& spawn);
+
 }  // namespace limn

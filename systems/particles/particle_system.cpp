@@ -202,6 +202,31 @@ void find_spawns(EmitterSteps& steps, const StepContext& context) {
     });
 }
 
+/// Likewise for children that the GPU moves; record_gpu_particles adds them to its step.
+void find_gpu_spawns(const EmitterSteps& steps, GpuChildren& children, const StepContext& context) {
+    constexpr std::uint32_t kSpawns = name_hash("particle sources");
+    children.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleSource& source,
+                      GpuParticles& particles) {
+        particles.spawns.clear();
+        const auto parent =
+            std::find_if(steps.others.begin(), steps.others.end(), [&](const EmitterStep& other) {
+                return other.row.entity == source.emitter;
+            });
+        if (parent == steps.others.end() || !emitter.active) {
+            return;
+        }
+        const std::uint64_t window = particles.clock.born - particles.oldest();
+        const std::size_t room = birth_room(emitter, window, particles.clock);
+        Random random(context.seed, subject_of(emitter, entity), kSpawns, context.time.frame);
+        std::vector<ParticleSpawn> spawns;
+        particles.clock.dropped += find_spawns(
+            source, emitter, *parent->row.pool, parent->hits, context.dt, room, random, spawns);
+        for (const ParticleSpawn& spawn : spawns) {
+            particles.spawns.push_back(place_spawn(spawn));
+        }
+    });
+}
+
 /// Particles before the first block with a dead one stay where they are.
 void remove_all_dead(std::span<const EmitterStep> emitters, std::span<const MovedBlock> blocks) {
     std::vector<const MovedBlock*> firsts;
@@ -265,6 +290,7 @@ void update_particles(
     move_all(steps.others, surroundings, blocks);
     collect_hits(blocks, surroundings, contact_surfaces.ripples, steps.others);
     find_spawns(steps, context);
+    find_gpu_spawns(steps, followers.gpu_children, context);
     remove_all_dead(steps.others, blocks);
     add_all_spawns(steps, context);
 }

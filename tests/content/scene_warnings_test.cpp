@@ -113,9 +113,7 @@ TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {
             "entity \"b\": particle_surface on a mesh needs an entity with mesh_instance",
             "entity \"c\": particle_surface on a path needs a path",
             "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
-            "entity \"f\": particle_surface has no effect beside a particle_source",
-            "entity \"e\": particle_surface has no effect on GPU particles; set "
-            "particle_emitter.executor to cpu"});
+            "entity \"f\": particle_surface has no effect beside a particle_source"});
 }
 
 TEST_CASE("scene warnings: missing colliders") {

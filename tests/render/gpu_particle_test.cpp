@@ -2,15 +2,20 @@
 
 #include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
+#include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/shadow.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_spray.h"
 #include "ecs/components/weather.h"
 #include "render/particles/gpu_particle_pools.h"
 #include "render/particles/particle_list.h"
+#include "render/shaders/particle_gpu.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
@@ -25,6 +30,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -378,6 +385,290 @@ TEST_CASE(
             CHECK(glm::distance(Vec3(cpu.x[i], cpu.y[i], cpu.z[i]), position) < 2e-4f);
         }
     }
+}
+
+TEST_CASE(
+    "gpu particles: on a surface and in a volume they are born where the CPU's are"
+    * technique("particle.gpu-init, particle.mesh-volume")) {
+    for (const BirthSurface on : {BirthSurface::Mesh, BirthSurface::Volume}) {
+        CAPTURE(static_cast<int>(on));
+        ParticleEmitter emitter = fountain();
+        emitter.shape = EmitterShape::Disc;
+        emitter.prewarm = 0.3f;
+        emitter.life = 2;
+        emitter.velocity_spread = {0.2f, 0.3f, 0.1f};
+        Executors both(emitter, {.drag = 0.3f});
+        const Entity ball = both.world.create(
+            MeshInstance{.mesh = both.add(make_ball(16)), .material = {}}, WorldTransform{},
+            PreviousWorldTransform{});
+        for (const Entity entity : {both.cpu, both.gpu}) {
+            both.world.add(
+                entity, ParticleSurface{.on = on, .entity = ball, .offset = 0.1f, .inherit = 0.7f});
+        }
+        for (int i = 0; i < 100; ++i) {
+            const Quat turn = glm::angleAxis(0.03f * static_cast<float>(i), Vec3(0.6f, 0, 0.8f));
+            both.world.get<PreviousWorldTransform>(ball).world =
+                both.world.get<const WorldTransform>(ball).world;
+            both.world.get<WorldTransform>(ball).world =
+                affine_from({0.02f * static_cast<float>(i), 1, 3}, turn, {1, 2, 1.5f});
+            both.step();
+        }
+        const std::vector<GpuParticle> gpu = both.read();
+        REQUIRE(gpu.size() == both.pool().size());
+        CHECK(gpu.size() > 500);
+        CHECK(largest_distance(gpu, both.pool(), 6) < 1e-4f);
+    }
+    // A volume that is not closed has no points: births are counted, and nothing is seen.
+    Executors none(fountain(), {});
+    const Entity open = none.world.create(
+        MeshInstance{.mesh = none.add(make_square()), .material = {}}, WorldTransform{},
+        PreviousWorldTransform{});
+    for (const Entity entity : {none.cpu, none.gpu}) {
+        none.world.add(entity, ParticleSurface{.on = BirthSurface::Volume, .entity = open});
+    }
+    none.step(30);
+    CHECK(none.pool().size() == 0);
+    CHECK(none.read().empty());
+    CHECK(none.recorded().clock.dropped == none.pool().clock.dropped);
+}
+
+TEST_CASE(
+    "gpu particles: those of another emitter give birth to them as to the CPU's"
+    * technique("particle.gpu-init")) {
+    for (const ParticleMoment at :
+         {ParticleMoment::Birth, ParticleMoment::Flight, ParticleMoment::Hit,
+          ParticleMoment::Death}) {
+        CAPTURE(static_cast<int>(at));
+        ParticleEmitter emitter = fountain();
+        emitter.rate = 30;
+        emitter.life = 1.5f;
+        emitter.shape = EmitterShape::Ball;
+        emitter.size = Vec3(0.1f);
+        Executors both(emitter, {.gravity = 0.3f});
+        ParticleEmitter parent = fountain();
+        parent.rate = 60;
+        parent.life = 0.7f;
+        parent.life_spread = 0.2f;
+        const Affine pose = affine_from({1, 1, 3}, Quat(1, 0, 0, 0), Vec3(1));
+        const Entity source = both.world.create(
+            parent, ParticleMotion{.gravity = 1.5f}, WorldTransform{pose},
+            PreviousWorldTransform{pose}, ParticleCollision{.bounce = 0.4f});
+        both.add_obstacle(
+            {.shape = ColliderShape::Plane}, {0, 0.9f, 0}, Quat(0.98f, 0.1f, 0, 0.1f));
+        for (const Entity entity : {both.cpu, both.gpu}) {
+            both.world.add(
+                entity, ParticleSource{.emitter = source, .at = at, .count = 3, .inherit = 0.5f});
+        }
+        both.world.run(add_particle_pools);
+        both.step(120);
+        const std::vector<GpuParticle> gpu = both.read();
+        REQUIRE(gpu.size() == both.pool().size());
+        CHECK(gpu.size() > 100);
+        CHECK(largest_distance(gpu, both.pool(), 6) < 1e-4f);
+        CHECK(both.recorded().clock.born == both.pool().clock.born);
+    }
+}
+
+TEST_CASE(
+    "gpu particles: drops that waves throw up fly as the CPU's, up to the capacity"
+    * technique("particle.gpu-init, water.crest-spray")) {
+    ParticleEmitter emitter = fountain();
+    emitter.rate = 100;
+    emitter.capacity = 1500;
+    emitter.drop_speed = 1.3f;
+    emitter.life = 3;
+    Executors both(emitter, {.drag = 0.5f});
+    for (const Entity entity : {both.cpu, both.gpu}) {
+        both.world.add(entity, SprayDrops{});
+    }
+    for (int i = 0; i < 100; ++i) {
+        SprayDrops drops;
+        for (int k = 0; k < i % 30; ++k) {
+            drops.drops.push_back(
+                {{0.1f * static_cast<float>(k), 2, 0.03f * static_cast<float>(i)},
+                 {1, 0.2f * static_cast<float>(k), -2}});
+        }
+        both.world.get<SprayDrops>(both.cpu) = drops;
+        both.world.get<SprayDrops>(both.gpu) = drops;
+        both.step();
+    }
+    const std::vector<GpuParticle> gpu = both.read();
+    REQUIRE(gpu.size() == both.pool().size());
+    CHECK(gpu.size() == 1500);
+    CHECK(both.recorded().clock.dropped > 10);
+    CHECK(both.recorded().clock.dropped == both.pool().clock.dropped);
+    CHECK(largest_distance(gpu, both.pool(), 10) < 1e-4f);
+}
+
+/// Balls in a ball of 1 m that fly in all directions.
+ParticleEmitter gas(int count, float speed) {
+    ParticleEmitter emitter;
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = static_cast<float>(count)}};
+    emitter.capacity = static_cast<std::uint32_t>(count);
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = {1, 1, 1};
+    emitter.cone = kPi;
+    emitter.speed = speed;
+    emitter.life = 100;
+    return emitter;
+}
+
+Vec3 momentum_of(const std::vector<GpuParticle>& balls) {
+    Vec3 sum(0);
+    for (const GpuParticle& one : balls) {
+        sum += Vec3(one.velocity_life);
+    }
+    return sum;
+}
+
+TEST_CASE(
+    "gpu balls: where they meet in pairs they go where the CPU's go"
+    * technique("particle.interparticle")) {
+    for (const float bounce : {0.5f, 1.0f}) {
+        CAPTURE(bounce);
+        Executors both(gas(700, 1), {.gravity = 0});
+        Executors free(gas(700, 1), {.gravity = 0});
+        for (const Entity entity : {both.cpu, both.gpu}) {
+            both.world.add(entity, ParticleBalls{.radius = 0.02f, .bounce = bounce});
+        }
+        both.step(20);
+        free.step(20);
+        const std::vector<GpuParticle> gpu = both.read();
+        const std::vector<GpuParticle> alone = free.read();
+        const ParticlePool& cpu = both.pool();
+        REQUIRE(gpu.size() == 700);
+        REQUIRE(cpu.size() == 700);
+        std::size_t apart = 0;
+        std::size_t bumped = 0;
+        for (std::size_t i = 0; i < gpu.size(); ++i) {
+            const Vec3 position = {cpu.x[i], cpu.y[i], cpu.z[i]};
+            apart += glm::distance(Vec3(gpu[i].position_age), position) < 1e-4f ? 0 : 1;
+            bumped += glm::distance(Vec3(alone[i].position_age), position) < 1e-3f ? 0 : 1;
+        }
+        CHECK(bumped > 60);
+        CHECK(apart <= bumped / 10);  // three at once
+    }
+}
+
+TEST_CASE(
+    "gpu balls: momentum stays in a crowd, energy falls, and each run has the same bits"
+    * technique("particle.interparticle")) {
+    const auto crowd = [] {
+        auto both = std::make_unique<Executors>(gas(1500, 0.4f), ParticleMotion{.gravity = 0});
+        both->world.add(both->gpu, ParticleBalls{.radius = 0.05f, .bounce = 0.5f});
+        both->step(1);
+        return both;
+    };
+    const auto both = crowd();
+    const auto energy_of = [](const std::vector<GpuParticle>& balls) {
+        double sum = 0;
+        for (const GpuParticle& one : balls) {
+            const Vec3 v(one.velocity_life);
+            sum += static_cast<double>(glm::dot(v, v));
+        }
+        return sum;
+    };
+    const std::vector<GpuParticle> first = both->read();
+    both->step(30);
+    const std::vector<GpuParticle> later = both->read();
+    both->step(30);
+    const std::vector<GpuParticle> last = both->read();
+    CHECK(glm::length(momentum_of(last) - momentum_of(later)) < 1e-4f * 1500);
+    CHECK(energy_of(last) < energy_of(later));
+    CHECK(energy_of(last) < energy_of(first));
+    const auto again = crowd();
+    again->step(60);  // in one go
+    const std::vector<GpuParticle> same = again->read();
+    REQUIRE(same.size() == last.size());
+    for (std::size_t i = 0; i < same.size(); ++i) {
+        CHECK(same[i].position_age == last[i].position_age);
+        CHECK(same[i].velocity_life == last[i].velocity_life);
+    }
+}
+
+TEST_CASE(
+    "gpu balls: the neighbors of each are those of all against all"
+    * technique("particle.interparticle")) {
+    constexpr float kRadius = 0.03f;
+    Executors both(gas(2000, 0), {.gravity = 0});
+    both.world.add(both.gpu, ParticleBalls{.radius = kRadius});
+    both.step(1);
+    (void)both.read();
+    Executors before(gas(2000, 0), {.gravity = 0});  // where they were before they bumped
+    before.step(1);
+    const std::vector<GpuParticle> balls = before.read();
+    const GpuParticlePool& pool = *both.pools.pools().begin()->second;
+    std::vector<std::uint32_t> near(std::size_t{2000} * layout::kBallNearWords);
+    pool.balls.near.read(0, std::as_writable_bytes(std::span(near)));
+    std::size_t pairs = 0;
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        std::vector<std::uint32_t> expected;
+        for (std::uint32_t k = 0; k < 2000; ++k) {
+            const float apart =
+                glm::distance(Vec3(balls[i].position_age), Vec3(balls[k].position_age));
+            if (i != k && apart < 2.2f * kRadius) {
+                expected.push_back(k);
+            }
+        }
+        const std::uint32_t* const own = &near[std::size_t{i} * layout::kBallNearWords];
+        std::vector<std::uint32_t> found(own + 2, own + 2 + own[0]);
+        std::sort(found.begin(), found.end());
+        CHECK(found == expected);
+        pairs += expected.size();
+    }
+    CHECK(pairs > 500);
+}
+
+TEST_CASE(
+    "gpu balls: poured into a box they come to rest in a heap as high as the CPU's"
+    * technique("particle.interparticle")) {
+    ParticleEmitter emitter = fountain();
+    emitter.rate = 150;
+    emitter.capacity = 300;
+    emitter.shape = EmitterShape::Disc;
+    emitter.size = {0.2f, 0, 0.2f};
+    emitter.speed = -0.5f;
+    emitter.life = 100;
+    Executors both(emitter, {});
+    both.collide({.bounce = 0.2f, .friction = 0.8f, .radius = 0.05f});
+    for (const Entity entity : {both.cpu, both.gpu}) {
+        both.world.add(entity, ParticleBalls{.radius = 0.05f, .bounce = 0.3f});
+    }
+    both.add_obstacle({.shape = ColliderShape::Plane}, {1, 0, 3});
+    for (int axis : {0, 2}) {
+        for (const float side : {-1.0f, 1.0f}) {
+            Vec3 size(1.5f);
+            size[axis] = 0.5f;
+            Vec3 position = {1, 1, 3};
+            position[axis] += side * 0.9f;
+            both.add_obstacle({.shape = ColliderShape::Box, .size = size}, position);
+        }
+    }
+    both.step(420);
+    const std::vector<GpuParticle> gpu = both.read();
+    const ParticlePool& cpu = both.pool();
+    REQUIRE(gpu.size() == 300);
+    REQUIRE(cpu.size() == 300);
+    double height[2] = {0, 0};
+    double speed = 0;
+    double deepest = 0;
+    for (std::size_t i = 0; i < gpu.size(); ++i) {
+        const Vec3 at(gpu[i].position_age);
+        CHECK(std::abs(at.x - 1) < 0.36f);  // within the walls
+        CHECK(std::abs(at.z - 3) < 0.36f);
+        CHECK(at.y > 0.049f);
+        height[0] += static_cast<double>(cpu.y[i]) / 300;
+        height[1] += static_cast<double>(at.y) / 300;
+        speed += static_cast<double>(glm::length(Vec3(gpu[i].velocity_life))) / 300;
+        for (std::size_t k = 0; k < i; ++k) {
+            const float gap = glm::distance(at, Vec3(gpu[k].position_age));
+            deepest = std::max(deepest, static_cast<double>(0.1f - gap));
+        }
+    }
+    CHECK(height[1] == near(height[0]).epsilon(0.05));
+    CHECK(speed < 0.1);
+    CHECK(deepest < 0.02);
 }
 
 /// `count` particles at rest in a ball of 1 m.

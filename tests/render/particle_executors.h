@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
@@ -9,6 +10,7 @@
 #include "render/particles/gpu_particle_pools.h"
 #include "render/particles/particle_list.h"
 #include "systems/particles/gpu_particle_system.h"
+#include "systems/particles/particle_balls_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
 #include "tests/render/scene_fixture.h"
@@ -60,6 +62,7 @@ struct Executors : Scene {
             ++time.frame;
             world.run(find_particle_obstacles);
             world.run(update_particles);
+            world.run(update_particle_balls);
             world.run(record_gpu_particles);
         }
     }
@@ -83,7 +86,7 @@ struct Executors : Scene {
         pools.begin_frame(world);
         pools.add(
             frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0, std::nullopt,
-            world.find<ParticleCollision>(gpu));
+            world.find<ParticleCollision>(gpu), 1, world.find<ParticleBalls>(gpu));
         graph.begin_frame();
         pools.update(graph, {});
         graph.execute();

@@ -155,8 +155,7 @@ void check_surfaces(const ParticleCheck& check) {
 void check_gpu_particles(const ParticleCheck& check) {
     const World& world = check.world;
     world.query<const ParticleEmitter>().each([&](Entity entity, const ParticleEmitter& emitter) {
-        for (const std::string_view one :
-             {"particle_mesh", "particle_light", "particle_surface", "particle_balls", "trail"}) {
+        for (const std::string_view one : {"particle_mesh", "particle_light", "trail"}) {
             if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                 check.warn(
                     entity, fmt::format(
