@@ -8,12 +8,16 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/field_access.h"
+#include "ecs/reflect.h"
 #include "ecs/world.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +56,87 @@ Lines warnings_beside(const char* components, const char* emitter = "") {
         R"({{"entities": [{{"name": "fire", "particle_look": {{}}, "particle_emitter": {{{}}}{}}}]}})",
         emitter, components));
 }
+
+// ---- what has no effect, over all combinations
+
+/// What a field is set to, so that it differs from its default.
+void change_field(const FieldInfo& field, void* value) {
+    if (field.shape == FieldShape::List) {
+        field.list.resize(value, 1);
+        value = element_ptr(field, value, 0);
+    }
+    const int numbers = number_count(field.type);
+    if (numbers > 0) {
+        for (const double wanted : {0.37, 0.9, 3.0, 0.0, 1.0, 5000.0}) {
+            bool differs = false;
+            for (int lane = 0; lane < numbers; ++lane) {
+                const double before = get_number(field, value, lane);
+                differs = set_number(field, value, wanted, lane).ok() && wanted != before;
+            }
+            if (differs) {
+                return;
+            }
+        }
+    } else if (field.type == FieldType::Bool) {
+        *static_cast<bool*>(value) = !*static_cast<bool*>(value);
+    } else if (field.type == FieldType::Enum) {
+        const std::uint64_t next = (get_unsigned(field, value) + 1) % field.values.size();
+        CHECK(set_enum(field, value, field.values[next]).ok());
+    } else if (field.type == FieldType::Entity) {
+        static_cast<Entity*>(value)->index ^= 1u;
+    } else if (field.type == FieldType::Asset) {
+        *static_cast<std::uint32_t*>(value) = 0;
+    } else if (field.type == FieldType::Struct) {
+        for (const FieldInfo& inner : field.fields) {
+            change_field(inner, field_ptr(value, inner));
+        }
+    }
+}
+
+/// An emitter with what is beside it, and the fields and components that are ignored there.
+struct Situation {
+    const char* emitter;
+    const char* beside;
+    std::vector<std::string_view> ignored;
+};
+
+using Names = std::vector<std::string_view>;
+
+Names joined(Names a, const Names& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// Whatever the emitter is: fields of looks that need others.
+const Names kLooks = {
+    "particle_look.stretch",         "particle_look.camera_streak", "particle_look.attenuation",
+    "particle_look.columns",         "particle_look.rows",          "particle_look.frames",
+    "particle_look.frame_rate",      "particle_look.motion",        "particle_look.negative_light",
+    "particle_look.motion_strength", "particle_look.shadow_tint"};
+const Names kOnCpu = {"particle_look.sort", "particle_collision.collide_depth"};
+const Names kOnGpu = {"particle_look.lit_at", "particle_look.culling"};
+/// Unless something beside it needs them.
+const Names kEndless = {"particle_emitter.loop"};
+const Names kDry = {"particle_emitter.loop", "particle_emitter.drop_speed"};
+const Names kCalm = {
+    "particle_motion.wind", "particle_motion.weather", "particle_motion.turbulence_size",
+    "particle_motion.turbulence_speed"};
+const Names kWithSource = {
+    "particle_emitter.rate",    "particle_emitter.rate_curve",     "particle_emitter.rate_spread",
+    "particle_emitter.bursts",  "particle_emitter.duration",       "particle_emitter.loop",
+    "particle_emitter.prewarm", "particle_emitter.by_screen_area", "particle_emitter.inherit"};
+const Names kClosed = {
+    "particle_motion.drag",
+    "particle_motion.wind",
+    "particle_motion.weather",
+    "particle_motion.turbulence",
+    "particle_motion.turbulence_size",
+    "particle_motion.turbulence_speed",
+    "particle_motion.vortex",
+    "particle_motion.attraction",
+    "particle_motion.orbit",
+    "particle_motion.brake",
+    "particle_motion.fields"};
 
 }  // namespace
 
@@ -160,6 +245,143 @@ TEST_CASE("bad emitter: dropped particles are reported with the limit to raise")
     CHECK(
         found[0].text
         == R"(entity "smoke": 5 new particles were dropped; particle_emitter.capacity is 78)");
+}
+
+TEST_CASE("no effect: each field of each component, set where it counts and where it does not") {
+    register_all_components();
+    const char* const kMotion = R"(, "particle_motion": {})";
+    const char* const kCpu = R"("executor": "cpu")";
+    const std::vector<Situation> situations = {
+        {kCpu, kMotion, joined(kDry, kCalm)},
+        {R"("executor": "gpu")", kMotion, joined(kDry, kCalm)},
+        {R"("executor": "auto", "capacity": 300000)", kMotion, joined(kDry, kCalm)},
+        {kCpu, R"(, "particle_motion": {"drag": 1, "turbulence": 1})", kDry},
+        {kCpu, R"(, "particle_motion": {"integrator": "closed_form"})", joined(kDry, kClosed)},
+        {R"("executor": "cpu", "duration": 3, "shape": "ball", "direction": "radial")",
+         "",
+         {"particle_emitter.cone", "particle_emitter.drop_speed"}},
+        {kCpu, R"(, "particle_source": {"emitter": "other", "at": "hit"})",
+         joined(kDry, kWithSource)},
+        {kCpu, R"(, "particle_source": {"emitter": "other", "at": "flight"})",
+         joined(
+             joined(kDry, Names(kWithSource.begin() + 2, kWithSource.end())),
+             {"particle_source.count", "particle_source.spread"})},
+        {kCpu, R"(, "particle_surface": {"on": "mesh"}, "mesh_instance": {})",
+         joined(
+             kDry,
+             {"particle_surface.path", "particle_surface.blast", "particle_emitter.inherit"})},
+        {kCpu, R"(, "particle_surface": {"on": "pieces"}, "mesh_instance": {})",
+         joined(
+             kDry, {"particle_surface.path", "particle_surface.entity", "particle_surface.offset",
+                    "particle_emitter.inherit"})},
+        {kCpu, R"(, "particle_collision": {"action": "bounce"})", kDry},
+        {R"("executor": "gpu")", R"(, "particle_collision": {"action": "stick"})",
+         joined(kDry, {"particle_collision.bounce", "particle_collision.friction"})},
+        {kCpu, R"(, "particle_collider": {"shape": "sphere"})",
+         joined(kDry, {"particle_collider.ripple", "particle_collider.ripple_radius"})},
+        {kCpu, R"(, "particle_collider": {"shape": "plane"})",
+         joined(
+             kDry, {"particle_collider.size", "particle_collider.hollow",
+                    "particle_collider.ripple", "particle_collider.ripple_radius"})},
+        {kCpu, R"(, "particle_collider": {"shape": "water"}, "water": {}, "water_ripples": {})",
+         joined(kDry, {"particle_collider.size", "particle_collider.hollow"})},
+        {kCpu, R"(, "water": {}, "ocean": {}, "spray_source": {})",
+         joined(kEndless, {"spray_source.steepness", "ocean.gamma", "ocean.fetch"})},
+        {kCpu, R"(, "water": {"size": [9, 9]}, "water_waves": {}, "spray_source": {})",
+         joined(kEndless, {"spray_source.window"})},
+        {kCpu, R"(, "water": {}, "ocean": {"spectrum": "tma"})", kDry},
+    };
+    const auto has = [](const Names& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    std::size_t walked = 0;
+    for (const Situation& situation : situations) {
+        CAPTURE(std::string(situation.emitter));
+        CAPTURE(std::string(situation.beside));
+        Result<Level> level = parse_level(
+            fmt::format(
+                R"({{"entities": [{{"name": "other", "particle_emitter": {{}}, "particle_look": {{}}}},
+                {{"name": "fire", "particle_look": {{"lit": 1}}, "particle_emitter": {{{}}}{}}}]}})",
+                situation.emitter, situation.beside),
+            "t.level.json");
+        REQUIRE_MESSAGE(level.ok(), (level ? std::string() : level.error().message));
+        World world;
+        (void)spawn_level(world, *std::move(level));
+        Entity fire;
+        world.query<const Name>().each(
+            [&](Entity entity, const Name& name) { fire = name.text == "fire" ? entity : fire; });
+        for (const ComponentInfo* const info : all_components()) {
+            const bool counts = info->name.starts_with("particle_") || info->name == "ocean"
+                                || info->name == "spray_source";
+            if (!counts || !world.has(fire, info->id) || info->name == "particle_pool") {
+                continue;
+            }
+            for (const FieldInfo& field : info->fields) {
+                const std::string name = fmt::format("{}.{}", info->name, field.name);
+                CAPTURE(name);
+                AnyComponent before(*info, world.find(fire, info->id));
+                change_field(field, field_ptr(world.find(fire, info->id), field));
+                std::vector<SceneWarning> found;
+                find_particle_warnings(world, found);
+                const auto told = std::count_if(found.begin(), found.end(), [&](const auto& one) {
+                    return one.text.starts_with(
+                        fmt::format("entity \"fire\": {} has no effect ", name));
+                });
+                const bool on_gpu = runs_on_gpu(world.get<const ParticleEmitter>(fire));
+                // What a field is changed to may change what it is in.
+                const bool is_switch =
+                    has({"particle_emitter.executor", "particle_emitter.capacity"}, name);
+                const bool expected = has(situation.ignored, name) || has(kLooks, name)
+                                      || has(on_gpu ? kOnGpu : kOnCpu, name);
+                CHECK((is_switch || told == (expected ? 1 : 0)));
+                CHECK(told <= 1);
+                world.remove(fire, info->id);
+                world.add_copy(fire, info->id, before.data());
+                ++walked;
+            }
+        }
+    }
+    CHECK(walked > 900);
+}
+
+TEST_CASE("no effect: each component beside an emitter, on either executor") {
+    struct Row {
+        const char* component;
+        bool on_cpu;
+        bool on_gpu;
+    };
+    for (const Row& row : std::initializer_list<Row>{
+             {"particle_mesh", true, false},
+             {"particle_light", true, false},
+             {"particle_surface", true, true},
+             {"particle_balls", true, true},
+             {"trail", true, false},
+             {"particle_motion", true, true},
+             {"particle_wrap", true, true},
+             {"particle_collision", true, true}}) {
+        for (const bool gpu : {false, true}) {
+            CAPTURE(row.component);
+            CAPTURE(gpu);
+            const Lines lines = warnings_beside(
+                fmt::format(
+                    R"(, "{}": {{}}, "mesh_instance": {{}}, "particle_collider": {{}})",
+                    row.component)
+                    .c_str(),
+                gpu ? R"("executor": "gpu")" : R"("executor": "cpu")");
+            const auto told = std::count_if(lines.begin(), lines.end(), [&](const auto& line) {
+                return line.find(fmt::format("{} has no effect on", row.component))
+                       != std::string::npos;
+            });
+            CHECK(told == ((gpu ? row.on_gpu : row.on_cpu) ? 0 : 1));
+        }
+    }
+    // Of two reasons the first is told, and of a component that is ignored no field.
+    const Lines lines = warnings_beside(
+        R"(, "particle_wrap": {}, "particle_collider": {}, "particle_collision": {"action": "stick", "bounce": 0.9})",
+        R"("executor": "gpu")");
+    CHECK(
+        lines
+        == Lines{R"(entity "fire": particle_collision has no effect beside a particle_wrap)"});
 }
 
 }  // namespace limn::particle_warnings_test

@@ -113,7 +113,10 @@ TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {
             "entity \"b\": particle_surface on a mesh needs an entity with mesh_instance",
             "entity \"c\": particle_surface on a path needs a path",
             "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
-            "entity \"f\": particle_surface has no effect beside a particle_source"});
+            "entity \"f\": particle_surface has no effect beside a particle_source",
+            "entity \"f\": particle_source has no effect with GPU particles, which give birth to "
+            "no "
+            "others; set the particle_emitter.executor of its emitter to cpu"});
 }
 
 TEST_CASE("scene warnings: missing colliders") {

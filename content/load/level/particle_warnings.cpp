@@ -1,6 +1,7 @@
 #include "content/load/level/particle_warnings.h"
 
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/particle_surface.h"
@@ -8,14 +9,21 @@
 #include "ecs/components/path.h"
 #include "ecs/components/point_mass.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/trail.h"
+#include "ecs/components/water.h"
+#include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
+#include "ecs/reflect.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -152,46 +160,321 @@ void check_surfaces(const ParticleCheck& check) {
     });
 }
 
+// ---- what has no effect where it is: components, and fields that a level has set
+
+template <typename Component>
+const Component& component_or_default(const World& world, Entity entity) {
+    static const Component kDefault;
+    const auto* const found = world.find<Component>(entity);
+    return found != nullptr ? *found : kDefault;
+}
+
+const ParticleEmitter& emitter_of(const World& world, Entity entity) {
+    return component_or_default<ParticleEmitter>(world, entity);
+}
+const ParticleMotion& motion_of(const World& world, Entity entity) {
+    return component_or_default<ParticleMotion>(world, entity);
+}
+const ParticleLook& look_of(const World& world, Entity entity) {
+    return component_or_default<ParticleLook>(world, entity);
+}
+const ParticleSource& source_of(const World& world, Entity entity) {
+    return component_or_default<ParticleSource>(world, entity);
+}
+ColliderShape collider_shape_of(const World& world, Entity entity) {
+    return component_or_default<ParticleCollider>(world, entity).shape;
+}
+BirthSurface surface_kind_of(const World& world, Entity entity) {
+    return component_or_default<ParticleSurface>(world, entity).on;
+}
+
+bool is_on_gpu(const World& world, Entity entity) {
+    return world.has<ParticleEmitter>(entity) && runs_on_gpu(emitter_of(world, entity));
+}
+bool is_on_cpu(const World& world, Entity entity) {
+    return world.has<ParticleEmitter>(entity) && !runs_on_gpu(emitter_of(world, entity));
+}
+bool is_closed_form(const World& world, Entity entity) {
+    return motion_of(world, entity).integrator == ParticleIntegrator::ClosedForm;
+}
+bool is_closed_on_gpu(const World& world, Entity entity) {
+    return is_closed_form(world, entity) && is_on_gpu(world, entity);
+}
+bool has_no_drag(const World& world, Entity entity) {
+    return !(motion_of(world, entity).drag > 0) && !is_closed_form(world, entity);
+}
+bool has_no_turbulence(const World& world, Entity entity) {
+    return motion_of(world, entity).turbulence == 0 || is_closed_form(world, entity);
+}
+bool has_wrap(const World& world, Entity entity) {
+    return world.has<ParticleWrap>(entity);
+}
+bool has_source(const World& world, Entity entity) {
+    return world.has<ParticleSource>(entity);
+}
+bool is_born_at_events(const World& world, Entity entity) {
+    return has_source(world, entity) && source_of(world, entity).at != ParticleMoment::Flight
+           && emitter_of(world, entity).rate > 0;
+}
+bool is_born_in_flight(const World& world, Entity entity) {
+    return source_of(world, entity).at == ParticleMoment::Flight;
+}
+bool has_source_or_surface(const World& world, Entity entity) {
+    return has_source(world, entity) || world.has<ParticleSurface>(entity);
+}
+bool has_no_spray(const World& world, Entity entity) {
+    return !has_component(world, entity, "spray_source")
+           && !has_component(world, entity, "spray_obstacle");
+}
+bool never_ends(const World& world, Entity entity) {
+    return !(emitter_of(world, entity).duration > 0);
+}
+bool is_radial(const World& world, Entity entity) {
+    return emitter_of(world, entity).direction == EmitterDirection::Radial
+           && emitter_of(world, entity).shape != EmitterShape::Point;
+}
+bool does_not_bounce(const World& world, Entity entity) {
+    return component_or_default<ParticleCollision>(world, entity).action != CollisionAction::Bounce;
+}
+bool has_no_size(const World& world, Entity entity) {
+    const ColliderShape shape = collider_shape_of(world, entity);
+    return shape != ColliderShape::Sphere && shape != ColliderShape::Box;
+}
+bool is_no_sphere(const World& world, Entity entity) {
+    return collider_shape_of(world, entity) != ColliderShape::Sphere;
+}
+bool does_not_ripple(const World& world, Entity entity) {
+    return collider_shape_of(world, entity) != ColliderShape::Water
+           || !has_component(world, entity, "water_ripples");
+}
+bool is_not_on_path(const World& world, Entity entity) {
+    return surface_kind_of(world, entity) != BirthSurface::Path;
+}
+bool is_not_on_mesh(const World& world, Entity entity) {
+    const BirthSurface on = surface_kind_of(world, entity);
+    return on != BirthSurface::Mesh && on != BirthSurface::Volume;
+}
+bool has_no_offset(const World& world, Entity entity) {
+    const BirthSurface on = surface_kind_of(world, entity);
+    return on != BirthSurface::Mesh && on != BirthSurface::Path;
+}
+bool is_not_on_pieces(const World& world, Entity entity) {
+    return surface_kind_of(world, entity) != BirthSurface::Pieces;
+}
+
+/// Of the quads of an emitter alone: trails, beams and billboards read a look in other ways.
+bool shows_particles(const World& world, Entity entity) {
+    return world.has<ParticleEmitter>(entity) && !has_component(world, entity, "trail")
+           && !has_component(world, entity, "beam") && !has_component(world, entity, "billboard");
+}
+bool is_no_streak(const World& world, Entity entity) {
+    return shows_particles(world, entity)
+           && look_of(world, entity).facing != ParticleFacing::Velocity;
+}
+bool is_not_in_pixels(const World& world, Entity entity) {
+    return shows_particles(world, entity)
+           && look_of(world, entity).facing != ParticleFacing::Pixels;
+}
+bool has_no_image(const World& world, Entity entity) {
+    return shows_particles(world, entity) && look_of(world, entity).image.index == kNoAsset;
+}
+bool has_no_motion_map(const World& world, Entity entity) {
+    return shows_particles(world, entity) && look_of(world, entity).motion.index == kNoAsset;
+}
+bool casts_no_shadow(const World& world, Entity entity) {
+    return shows_particles(world, entity) && !(look_of(world, entity).shadow > 0);
+}
+bool is_unlit(const World& world, Entity entity) {
+    return shows_particles(world, entity) && !(look_of(world, entity).lit > 0);
+}
+bool is_amortized_on_cpu(const World& world, Entity entity) {
+    return is_on_cpu(world, entity) && look_of(world, entity).sort == ParticleSort::Amortized;
+}
+bool is_culled_by_bounds_on_gpu(const World& world, Entity entity) {
+    return is_on_gpu(world, entity) && look_of(world, entity).culling == ParticleCulling::Bounds;
+}
+
+bool is_on_ocean(const World& world, Entity entity) {
+    return has_component(world, entity, "ocean") && !has_component(world, entity, "water_waves");
+}
+bool is_bounded_water(const World& world, Entity entity) {
+    const auto* const water = world.find<Water>(entity);
+    return water != nullptr && water->size.x > 0 && water->size.y > 0;
+}
+bool has_no_fetch(const World& world, Entity entity) {
+    const OceanSpectrum spectrum = component_or_default<Ocean>(world, entity).spectrum;
+    return spectrum != OceanSpectrum::Jonswap && spectrum != OceanSpectrum::Tma;
+}
+
+constexpr std::string_view kOnGpu = "on GPU particles; set particle_emitter.executor to cpu";
+constexpr std::string_view kClosedForm = "with the integrator closed_form";
+constexpr std::string_view kAtEvents = "beside a particle_source, unless it is in flight";
+constexpr std::string_view kWithSource = "beside a particle_source";
+
+/// A component, or a field of it that a level has set, and what ignores it.
+struct Ignored {
+    std::string_view component;
+    std::string_view field;  ///< empty: the component as a whole
+    bool (*applies)(const World&, Entity);
+    std::string_view where;  ///< after "has no effect "
+};
+
+constexpr Ignored kIgnored[] = {
+    {"particle_mesh", "", is_on_gpu, kOnGpu},
+    {"particle_light", "", is_on_gpu, kOnGpu},
+    {"particle_balls", "", is_closed_on_gpu, "on GPU particles in closed form"},
+    {"trail", "", is_on_gpu, kOnGpu},
+    {"particle_look", "lit_at", is_on_gpu,
+     "on GPU particles, whose light is evaluated at their corners; set particle_emitter.executor "
+     "to cpu"},
+    {"particle_look", "camera_streak", is_on_gpu, kOnGpu},
+    {"particle_look", "culling", is_culled_by_bounds_on_gpu, kOnGpu},
+    {"particle_look", "sort", is_amortized_on_cpu,
+     "on CPU particles, which are sorted as a whole; set particle_emitter.executor to gpu"},
+    {"particle_collision", "collide_depth", is_on_cpu,
+     "on CPU particles; set particle_emitter.executor to gpu"},
+
+    {"particle_collision", "", is_closed_on_gpu, "on GPU particles in closed form"},
+    {"particle_wrap", "", is_closed_form, kClosedForm},
+    {"particle_motion", "drag", is_closed_form, kClosedForm},
+    {"particle_motion", "wind", is_closed_form, kClosedForm},
+    {"particle_motion", "weather", is_closed_form, kClosedForm},
+    {"particle_motion", "turbulence", is_closed_form, kClosedForm},
+    {"particle_motion", "vortex", is_closed_form, kClosedForm},
+    {"particle_motion", "attraction", is_closed_form, kClosedForm},
+    {"particle_motion", "orbit", is_closed_form, kClosedForm},
+    {"particle_motion", "brake", is_closed_form, kClosedForm},
+    {"particle_motion", "fields", is_closed_form, kClosedForm},
+    {"particle_motion", "wind", has_no_drag, "without drag"},
+    {"particle_motion", "weather", has_no_drag, "without drag"},
+    {"particle_motion", "turbulence_size", has_no_turbulence, "without turbulence"},
+    {"particle_motion", "turbulence_speed", has_no_turbulence, "without turbulence"},
+
+    {"particle_collision", "", has_wrap, "beside a particle_wrap"},
+    {"particle_collision", "bounce", does_not_bounce, "on particles that stick or are killed"},
+    {"particle_collision", "friction", does_not_bounce, "on particles that stick or are killed"},
+    {"particle_collider", "size", has_no_size, "unless it is a sphere or a box"},
+    {"particle_collider", "hollow", is_no_sphere, "unless it is a sphere"},
+    {"particle_collider", "ripple", does_not_ripple, "unless it is water with water_ripples"},
+    {"particle_collider", "ripple_radius", does_not_ripple,
+     "unless it is water with water_ripples"},
+
+    {"particle_emitter", "rate", is_born_at_events, kAtEvents},
+    {"particle_emitter", "rate_curve", is_born_at_events, kAtEvents},
+    {"particle_emitter", "rate_spread", has_source, kWithSource},
+    {"particle_emitter", "bursts", has_source, kWithSource},
+    {"particle_emitter", "duration", has_source, kWithSource},
+    {"particle_emitter", "prewarm", has_source, kWithSource},
+    {"particle_emitter", "by_screen_area", has_source, kWithSource},
+    {"particle_emitter", "inherit", has_source_or_surface,
+     "beside a particle_source or particle_surface, which has an inherit of its own"},
+    {"particle_emitter", "loop", never_ends, "without a duration"},
+    {"particle_emitter", "cone", is_radial, "with radial directions"},
+    {"particle_emitter", "drop_speed", has_no_spray, "without a spray_source or spray_obstacle"},
+    {"particle_source", "count", is_born_in_flight, "in flight; set particle_emitter.rate"},
+    {"particle_source", "spread", is_born_in_flight, "in flight; set particle_emitter.rate"},
+    {"particle_surface", "path", is_not_on_path, "unless it is on a path"},
+    {"particle_surface", "entity", is_not_on_mesh, "unless it is on a mesh or in a volume"},
+    {"particle_surface", "offset", has_no_offset, "unless it is on a mesh or a path"},
+    {"particle_surface", "blast", is_not_on_pieces, "unless it is on pieces"},
+
+    {"particle_look", "stretch", is_no_streak, "unless it is facing velocity"},
+    {"particle_look", "camera_streak", is_no_streak, "unless it is facing velocity"},
+    {"particle_look", "attenuation", is_not_in_pixels, "unless it is facing pixels"},
+    {"particle_look", "columns", has_no_image, "without an image"},
+    {"particle_look", "rows", has_no_image, "without an image"},
+    {"particle_look", "frames", has_no_image, "without an image"},
+    {"particle_look", "frame_rate", has_no_image, "without an image"},
+    {"particle_look", "motion", has_no_image, "without an image"},
+    {"particle_look", "negative_light", has_no_image, "without an image"},
+    {"particle_look", "motion_strength", has_no_motion_map, "without an image of motion"},
+    {"particle_look", "shadow_tint", casts_no_shadow, "without a shadow"},
+    {"particle_look", "forward", is_unlit, "unless it is lit"},
+    {"particle_look", "lit_at", is_unlit, "unless it is lit"},
+
+    {"spray_source", "steepness", is_on_ocean, "on an ocean, which has a foam_threshold"},
+    {"spray_source", "window", is_bounded_water, "on water with a size"},
+    {"ocean", "gamma", has_no_fetch, "unless the spectrum is jonswap or tma"},
+    {"ocean", "fetch", has_no_fetch, "unless the spectrum is jonswap or tma"},
+};
+
+bool are_equal_fields(const FieldInfo& field, const void* a, const void* b) {
+    const std::size_t count = element_count(field, a);
+    bool equal = count == element_count(field, b);
+    for (std::size_t i = 0; equal && i < count; ++i) {
+        equal = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
+    }
+    return equal;
+}
+
+/// Whether a component of an entity has this field set to another value than its default; with an
+/// empty name, whether it exists.
+bool is_set(const World& world, Entity entity, std::string_view component, std::string_view name) {
+    const ComponentInfo* const info = find_component(component);
+    if (info == nullptr || !world.has(entity, info->id)) {
+        return false;
+    }
+    if (name.empty()) {
+        return true;
+    }
+    const void* const value = world.find(entity, info->id);
+    const FieldInfo* const field = find_field(info->fields, name);
+    return field != nullptr && value != nullptr && info->defaults != nullptr
+           && !are_equal_fields(
+               *field, field_ptr(value, *field), field_ptr(info->defaults, *field));
+}
+
+/// One line for each component or field, whatever the number of reasons.
+void check_ignored(const ParticleCheck& check, Entity entity) {
+    std::vector<std::string> told;
+    for (const Ignored& row : kIgnored) {
+        if (!is_set(check.world, entity, row.component, row.field)
+            || !row.applies(check.world, entity)) {
+            continue;
+        }
+        const std::string whole(row.component);
+        const std::string name =
+            row.field.empty() ? whole : fmt::format("{}.{}", row.component, row.field);
+        if (std::none_of(told.begin(), told.end(), [&](const std::string& other) {
+                return other == name || other == whole;
+            })) {
+            check.warn(entity, fmt::format("{} has no effect {}", name, row.where));
+            told.push_back(name);
+        }
+    }
+}
+
+/// GPU particles know no water, and nobody knows where they are.
 void check_gpu_particles(const ParticleCheck& check) {
     const World& world = check.world;
-    world.query<const ParticleEmitter>().each([&](Entity entity, const ParticleEmitter& emitter) {
-        for (const std::string_view one : {"particle_mesh", "particle_light", "trail"}) {
-            if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
-                check.warn(
-                    entity, fmt::format(
-                                "{} has no effect on GPU particles; set "
-                                "particle_emitter.executor "
-                                "to cpu",
-                                one));
-            }
-        }
-    });
-    world.query<const ParticleEmitter, const ParticleLook>().each(
-        [&](Entity entity, const ParticleEmitter& emitter, const ParticleLook& look) {
-            if (runs_on_gpu(emitter) && look.lit_at == ParticleLitAt::Middle) {
-                check.warn(
-                    entity, "particle_look.lit_at has no effect on GPU particles, whose light is "
-                            "evaluated at their corners; set particle_emitter.executor to cpu");
-            }
-        });
-    bool for_cpu = false;
+    bool has_water = false;
     world.query<const ParticleCollider>().each([&](const ParticleCollider& collider) {
-        for_cpu = for_cpu || collider.shape == ColliderShape::Water;
+        has_water = has_water || collider.shape == ColliderShape::Water;
     });
     world.query<const ParticleEmitter, const ParticleCollision>().each(
         [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision& collision) {
-            const bool uses_depth_buffer = collision.collide_depth > 0;
-            if (for_cpu && runs_on_gpu(emitter) && !uses_depth_buffer) {
+            if (has_water && runs_on_gpu(emitter) && !(collision.collide_depth > 0)) {
                 check.warn(
-                    entity,
-                    "GPU particles pass through water; set particle_emitter.executor to cpu, or "
-                    "particle_collision.collide_depth to collide with what is in view");
-            } else if (uses_depth_buffer && !runs_on_gpu(emitter)) {
-                check.warn(
-                    entity, "particle_collision.collide_depth has no effect on CPU particles; set "
-                            "particle_emitter.executor to gpu");
+                    entity, "GPU particles pass through water; set particle_emitter.executor to "
+                            "cpu, or particle_collision.collide_depth to collide with what is in "
+                            "view");
             }
         });
+    world.query<const ParticleSource>().each([&](Entity entity, const ParticleSource& source) {
+        if (world.alive(source.emitter) && is_on_gpu(world, source.emitter)) {
+            check.warn(
+                entity, "particle_source has no effect with GPU particles, which give birth to no "
+                        "others; set the particle_emitter.executor of its emitter to cpu");
+        }
+    });
+    world.query<const Trail>().each([&](Entity entity, const Trail& trail) {
+        if (trail.emitter != entity && world.alive(trail.emitter)
+            && is_on_gpu(world, trail.emitter)) {
+            check.warn(
+                entity, "trail has no effect with GPU particles; set the "
+                        "particle_emitter.executor of its emitter to cpu");
+        }
+    });
 }
 
 void check_point_masses(const ParticleCheck& check) {
@@ -210,6 +493,7 @@ void find_particle_warnings(const World& world, std::vector<SceneWarning>& warni
     check_sources(check);
     check_surfaces(check);
     check_flipbooks(check);
+    world.each_entity([&](Entity entity) { check_ignored(check, entity); });
     check_gpu_particles(check);
     check_colliders(check);
     check_point_masses(check);
