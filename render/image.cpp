@@ -82,7 +82,7 @@ constexpr EffectEntry kImage[] = {
     effect<WaterEffect>(kSceneViews),                // over everything opaque
     effect<WaterVeilEffect>(kSceneViews),            // the water in front of an underwater camera
     effect<FogEffect>(kSceneViews),       // over all that has depth; later effects fog themselves
-    effect<AirlightEffect>(kSceneViews),  // halos and beams of lamps in the fog
+    effect<AirlightEffect>(kMainViews),   // halos and beams of lamps in the fog
     effect<ParticleEffect>(kSceneViews),  // those behind blended surfaces
     effect<BlendEffect>(kSceneViews),     // after sky and water, which are visible through it
     effect<ParticleFrontEffect>(kSceneViews),  // over all surfaces

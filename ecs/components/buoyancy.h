@@ -6,8 +6,8 @@
 namespace limn {
 
 /// With a WaterTouch, which defines the shape, on an entity without a parent: falls through air,
-/// floats on water, or sinks to the bottom. Mass is density times the volume of the shape,
-/// uniformly distributed.
+/// floats on water, or sinks to the bottom; boxes and balls push one another. Mass is density times
+/// the volume of the shape, uniformly distributed.
 struct Floating {
     float density = 500.0f;
     Vec3 center_of_mass = {0, 0, 0};

@@ -7,8 +7,7 @@ namespace limn {
 
 // Techniques: light.height-fog, light.airlight
 // Source of light.height-fog: Quílez, "Better fog", 2010; Henyey and Greenstein 1941
-// Source of light.airlight: Kulla and Fajardo, "Importance sampling techniques for path tracing in
-// participating media", 2012
+// Source of light.airlight: Kulla and Fajardo 2012
 
 /// Resource: fog that thins with height, extinction = density exp(-(y - base) / scale_height), and
 /// scatters what it takes. It lies in front of surfaces, water, glass, particles and the sky.
@@ -34,8 +33,8 @@ LIMN_FIELDS(HeightFog) {
     LIMN_FIELD(
         sun, "factor on the light that it scatters from the first directional light", "", 0, 10);
     LIMN_FIELD(
-        forward, "how much the sun's is scattered on: 0 to all sides, 0.6 haze, 0.85 dense fog", "",
-        0, 0.95);
+        forward, "how much light is scattered on: 0 to all sides, 0.6 haze, 0.85 dense fog", "", 0,
+        0.95);
     LIMN_FIELD(
         lamps,
         "factor on the light that it scatters from the 16 strongest point lights and spots: halos "

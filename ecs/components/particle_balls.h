@@ -8,8 +8,8 @@ namespace limn {
 
 /// Particles of the emitter are balls of equal mass that bump into each other
 /// (particle.interparticle), not into those of other emitters. In a crowd each collides with 64
-/// others at most. On the GPU all pairs of a pass move at once: two that meet part as on the CPU,
-/// crowds only on average.
+/// others at most, on the GPU with 30. There all pairs of a pass move at once: two that meet part
+/// as on the CPU, crowds only on average.
 struct ParticleBalls {
     float radius = 0.05f;
     float bounce = 0.5f;

@@ -9,8 +9,7 @@ namespace limn {
 
 // Techniques: water.fresnel-approx, water.reflection-refraction-maps, water.refraction-map,
 //     water.whitecaps
-// Source of water.whitecaps: Tessendorf, "Simulating ocean water", 2001: foam where the Jacobian is
-// small
+// Source of water.whitecaps: Tessendorf, "Simulating ocean water", 2001
 
 /// Fresnel reflectance of the surface seen from above (ecs/base/optics.h). From below, with total
 /// internal reflection, it is always exact.

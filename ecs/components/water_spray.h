@@ -34,10 +34,10 @@ LIMN_FIELDS(SpraySource) {
 }
 
 /// What waves hit: a point of a wall; or, with a WaterTouch or a ParticleCollider that is a ball, a
-/// box or a sphere, that body all along its waterline: moles, boulders, hulls. Of closed-form waves
-/// a crest sprays as it hits. Of an ocean and of ripples, whose crests are not known, the water
-/// does that runs against the body as fast as in their crests; so does a hull that runs into the
-/// water.
+/// box or a sphere, that body all along its waterline: moles, boulders, hulls. At a point
+/// crests of closed-form waves spray as they hit it. On bodies, and in an ocean or ripples, whose
+/// crests are not known, the water does that runs against them as fast as in crests; so does a hull
+/// that runs into the water.
 struct SprayObstacle {
     Vec3 normal = {0, 0, 1};
     float rate = 400.0f;

@@ -10,7 +10,7 @@ namespace limn {
 // The part of a view ray inside a light's sphere and cone is integrated by Gauss-Legendre
 // quadrature over the angle that it subtends at the light, where the integrand has no peak
 // (Kulla and Fajardo 2012). The light is attenuated by the fog on its way to the ray, too.
-// Shadows do not darken it, and reflections do not show it.
+// Shadows do not darken it; mirrors and probes do not show it.
 //
 // Reads    depth; HeightFog, LightList
 // Writes   radiance

@@ -156,7 +156,7 @@ void set_balls(
             static_cast<std::uint32_t>(end > oldest ? end - oldest : 0), step.motion.step.dt);
     }
     const std::uint32_t size = sort_size(pool.capacity);
-    if (balls.size != size) {
+    if (balls.size != size || balls.slots != pool.capacity) {
         const std::size_t slots = pool.capacity;
         const auto make = [](const char* label, std::size_t bytes) {
             return gpu::Buffer(label, bytes, gpu::BufferUse::GpuOnly);
@@ -167,6 +167,7 @@ void set_balls(
             buffer = make("ball motion", slots * 2 * sizeof(Vec4));
         }
         balls.size = size;
+        balls.slots = pool.capacity;
     }
 }
 
@@ -396,6 +397,16 @@ void GpuParticlePools::add(
     const bool closed_form = pool.closed_form;
     const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
     pool.collide_depth = depth > 0 && !closed_form ? depth : 0.0f;
+    if (frame.warm_up) {  // before there are steps to simulate
+        for (const bool has_shapes : {false, collision != nullptr}) {
+            for (const bool has_depth : {false, depth > 0}) {
+                (void)find_programs(*frame.device, has_shapes, has_depth);
+            }
+        }
+        if (balls != nullptr) {
+            (void)can_collide_balls(*frame.device);
+        }
+    }
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort(sort_window(pool), *sort_passes, pool.sort);

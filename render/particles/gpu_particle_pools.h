@@ -47,6 +47,7 @@ struct GpuBalls {
     gpu::Buffer near{};       ///< neighbors of each
     gpu::Buffer motion[2]{};  ///< positions and velocities, read and written in turn
     std::uint32_t size = 0;   ///< entries
+    std::uint32_t slots = 0;  ///< of near and motion
     float radius = 0;         ///< of this frame [m]; 0: none
     float bounce = 0;
     float wall_radius = -1;  ///< against colliders [m]; < 0: they hit none

@@ -86,11 +86,13 @@ vec3 scattered_light(int first, vec3 direction, float path) {
         float d2 = beside * beside + behind * behind;
         vec3 to_light = offset - t * direction;
         vec3 unit = to_light * inversesqrt(max(dot(to_light, to_light), 1e-12));
-        float extinction = height_fog.density.x * exp(min(-height_fog.density.y * direction.y * t, kMaxOpticalDepth));
+        float thicker = min(-height_fog.density.y * direction.y * t, kMaxOpticalDepth);
+        float extinction = height_fog.density.x * exp(thicker);
         float depth = fog_optical_depth(direction.y, t) + optical_depth(extinction, to_light);
         float light = distance_attenuation(d2, position.w, polynomial.xyz, color.w)
                       * spot_attenuation(unit, axis.xyz, axis.w, polynomial.w);
-        sum += kWeight[i] * light * d2 * extinction * exp(-depth) * fog_phase(dot(direction, unit));
+        float scattering = height_fog.density.x * exp(thicker - depth);  // one exponential: neither overflows alone
+        sum += kWeight[i] * light * d2 * (scattering * fog_phase(dot(direction, unit)));
     }
     return color.rgb * (sum * half_angle / beside);
 }

@@ -1,5 +1,5 @@
 // A step of a particle among colliders: swept from contact to contact as in
-// systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp. Definitions:
+// systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp and particle_balls.comp. Definitions:
 //   SHAPES           some colliders are height fields or meshes
 //   DEPTH_COLLISION  particles also collide with the depth of the previous frame
 

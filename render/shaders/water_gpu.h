@@ -61,7 +61,7 @@ const uint kWaterCopyDepthUnit = 1u;
 const uint kWaterReflectionUnit = 22u;
 const uint kFoamPatternUnit = 29u;
 const uint kFloorMapUnit = 27u;
-const uint kReflectionImageUnit = 25u;
+const uint kReflectionImageUnit = 32u;
 const uint kWaterVeilDepthUnit = 5u;
 
 #ifdef __cplusplus

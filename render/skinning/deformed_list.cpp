@@ -9,6 +9,7 @@
 #include "ecs/components/wrinkle.h"
 #include "ecs/components/wrinkle_comparison.h"
 #include "ecs/components/wrinkle_ladder.h"
+#include "ecs/components/wrinkle_maps.h"
 #include "ecs/world.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/gpu/buffer_texture.h"
@@ -202,13 +203,14 @@ void DeformedList::find_wrinkles(
     const auto* rungs = world.find<WrinkleRungs>(entry.entity);
     entry.wrinkled = wrinkles != nullptr && surface != nullptr
                      && surface->method != WrinkleMethod::None
-                     && (rungs == nullptr || rungs->maps > 0)
+                     && (rungs == nullptr || rungs->maps > 0 || finest)
                      && wrinkles->mask.size() == entry.rest->vertex_count;
     entry.wrinkle_columns = entry.wrinkled && !columns.empty() && has_columns(*surface)
                             && meshes_->meshes()[entry.mesh.index].tangents;
     unsigned features = 0;
     if (entry.wrinkled) {
-        const bool shades = rungs != nullptr || !meshes_->meshes()[entry.mesh.index].tangents;
+        const bool shades = !meshes_->meshes()[entry.mesh.index].tangents
+                            || (rungs != nullptr && !world.has<WrinkleMaps>(entry.entity));
         features = entry.wrinkle_columns ? column_features(*surface, columns)
                                          : wrinkle_features(*surface, shades);
     }

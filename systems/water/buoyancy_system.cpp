@@ -56,7 +56,9 @@ void update_floating_bodies(
     for (const Body& body : afloat) {
         contact_memory.push_back({body.touch, body.floating, body.state, body.transform});
     }
-    separate_floating_bodies(contact_memory);
+    if (time->step > 0) {
+        separate_floating_bodies(contact_memory);
+    }
     for (const Body& body : afloat) {  // in their order, for determinism
         if (!body.splash) {
             continue;

@@ -490,7 +490,7 @@ displaced_water(const WaterTouch& touch, const Transform& transform, const Water
 
 BodyMass body_mass(const WaterTouch& touch, const Floating& floating, const Vec3& scale) {
     const Hull hull = make_hull(touch, floating, scale);
-    return {hull.mass, hull.inertia, -hull.origin};
+    return {hull.mass, hull.inertia, -hull.origin, hull.half};
 }
 
 RippleImpulse splash_of(float mass, float radius, float speed) {

@@ -44,6 +44,7 @@ struct BodyMass {
     float mass = 0;            ///< [kg]
     Vec3 inertia = {0, 0, 0};  ///< about local axes through the center of mass [kg m^2]
     Vec3 center = {0, 0, 0};   ///< center of mass relative to the entity, along local axes [m]
+    Vec3 half = {0, 0, 0};     ///< half extents of the shape; of a ball, its radius [m]
 };
 [[nodiscard]] BodyMass
 body_mass(const WaterTouch& touch, const Floating& floating, const Vec3& scale);

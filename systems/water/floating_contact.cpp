@@ -28,7 +28,7 @@ constexpr float kParallel = 1e-4f;  // squared sine below which edges have no cr
 
 /// A rigid body during a step.
 struct Solid {
-    SolidShape shape;
+    ContactShape shape;
     Vec3 center;  ///< of mass [m]
     Vec3 moved = {0, 0, 0};
     Vec3 velocity;
@@ -40,7 +40,7 @@ struct Solid {
     bool touched = false;
 };
 
-float extent_along(const SolidShape& box, const Vec3& axis) {
+float extent_along(const ContactShape& box, const Vec3& axis) {
     float extent = 0;
     for (int i = 0; i < 3; ++i) {
         extent += std::abs(glm::dot(box.axes[i], axis)) * box.half[i];
@@ -50,7 +50,7 @@ float extent_along(const SolidShape& box, const Vec3& axis) {
 
 /// The middle of the corner, edge or face of `box` that is farthest along `direction`, and the
 /// number of its dimensions.
-std::pair<Vec3, int> farthest_feature(const SolidShape& box, const Vec3& direction) {
+std::pair<Vec3, int> farthest_feature(const ContactShape& box, const Vec3& direction) {
     Vec3 point = box.center;
     int dimensions = 0;
     for (int i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ std::pair<Vec3, int> farthest_feature(const SolidShape& box, const Vec3& directi
     return {point, dimensions};
 }
 
-std::optional<BodyContact> ball_on_ball(const SolidShape& a, const SolidShape& b) {
+std::optional<BodyContact> ball_on_ball(const ContactShape& a, const ContactShape& b) {
     const Vec3 apart = a.center - b.center;
     const float distance = glm::length(apart);
     const float depth = a.half.x + b.half.x - distance;
@@ -76,7 +76,7 @@ std::optional<BodyContact> ball_on_ball(const SolidShape& a, const SolidShape& b
 }
 
 /// The ball is the first.
-std::optional<BodyContact> ball_on_box(const SolidShape& ball, const SolidShape& box) {
+std::optional<BodyContact> ball_on_box(const ContactShape& ball, const ContactShape& box) {
     const Vec3 apart = glm::transpose(box.axes) * (ball.center - box.center);
     const Vec3 nearest = glm::clamp(apart, -box.half, box.half);
     const float distance = glm::length(apart - nearest);
@@ -96,7 +96,7 @@ std::optional<BodyContact> ball_on_box(const SolidShape& ball, const SolidShape&
         ball.center, side * box.axes[face], ball.half.x + box.half[face] - std::abs(apart[face])};
 }
 
-std::optional<BodyContact> box_on_box(const SolidShape& a, const SolidShape& b) {
+std::optional<BodyContact> box_on_box(const ContactShape& a, const ContactShape& b) {
     const Vec3 apart = a.center - b.center;
     BodyContact best{.depth = INFINITY};
     const auto test = [&](const Vec3& axis, float bias) {
@@ -149,7 +149,7 @@ std::optional<Solid> make_solid(const ContactBody& body, std::uint32_t index) {
     Solid solid;
     const Quat rotation = normalize_or_identity(pose.rotation);
     solid.shape.axes = glm::mat3_cast(rotation);
-    solid.shape.half = glm::abs(body.touch->half * pose.scale);
+    solid.shape.half = mass.half;
     solid.shape.ball = body.touch->shape == TouchShape::Ball;
     solid.reach = solid.shape.ball ? solid.shape.half.x : glm::length(solid.shape.half);
     solid.shape.center = pose.position + rotation * (body.touch->offset * pose.scale);
@@ -242,7 +242,7 @@ void solve(Solid& a, Solid& b, const BodyContact& contact, bool first_round) {
 
 }  // namespace
 
-std::optional<BodyContact> find_contact(const SolidShape& a, const SolidShape& b) {
+std::optional<BodyContact> find_contact(const ContactShape& a, const ContactShape& b) {
     if (a.ball) {
         return b.ball ? ball_on_ball(a, b) : ball_on_box(a, b);
     }

@@ -25,7 +25,7 @@ struct BodyContact {
 };
 
 /// A box or ball in world space.
-struct SolidShape {
+struct ContactShape {
     Vec3 center = {0, 0, 0};
     Mat3 axes = Mat3(1);    ///< of a box, unit
     Vec3 half = {0, 0, 0};  ///< half extents; of a ball, x is its radius [m]
@@ -33,7 +33,7 @@ struct SolidShape {
 };
 
 /// None if they do not overlap.
-[[nodiscard]] std::optional<BodyContact> find_contact(const SolidShape& a, const SolidShape& b);
+[[nodiscard]] std::optional<BodyContact> find_contact(const ContactShape& a, const ContactShape& b);
 
 /// A body that may touch others.
 struct ContactBody {

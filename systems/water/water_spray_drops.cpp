@@ -231,6 +231,9 @@ void spray_impact(
     if (!top.is_water) {
         return;
     }
+    if (strongest == nullptr && !lines.empty()) {
+        return;  // all closed-form waves run away from the wall
+    }
     if (strongest == nullptr) {
         const Vec3 position = {point.x, top.position.y, point.z};
         throw_drops(

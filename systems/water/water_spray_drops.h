@@ -41,7 +41,7 @@ void spray_breakers(
 
 /// Adds the drops emitted in a step where the strongest wave hits a wall at `point`: with about the
 /// speed Q, in a cone about the reflected direction. `normal` is unit. On water without closed-form
-/// waves, or where none of them runs against the wall: by spray_surge.
+/// waves, or where none of them runs against the wall: by the speed of its surge.
 void spray_impact(
     const WaterSurface& surface, const SprayObstacle& obstacle, const Vec3& point,
     const Vec3& normal, float step, Random& random, std::vector<SprayDrop>& drops);

@@ -37,6 +37,7 @@ const std::vector<KnownDefine>& known_defines() {
         {"RADIUS", {"3", "15"}},
         {"SIZE", {"32u", "256u"}},
         {"SINGLE_LIGHTS", {"1", "4"}},
+        {"ENVIRONMENT_LAYOUT", {"0", "1", "2", "3"}},
     };
     return known;
 }

@@ -19,17 +19,17 @@
 namespace limn::floating_contact_test {
 namespace {
 
-SolidShape ball_at(const Vec3& center, float radius) {
+ContactShape ball_at(const Vec3& center, float radius) {
     return {.center = center, .half = Vec3(radius), .ball = true};
 }
-SolidShape box_at(const Vec3& center, const Vec3& half, const Quat& rotation = {1, 0, 0, 0}) {
+ContactShape box_at(const Vec3& center, const Vec3& half, const Quat& rotation = {1, 0, 0, 0}) {
     return {.center = center, .axes = glm::mat3_cast(rotation), .half = half};
 }
 
 /// Distance by which the farthest points of `a` and `b` along a direction overlap, in double
 /// precision.
-double overlap_along(const SolidShape& a, const SolidShape& b, const glm::dvec3& direction) {
-    const auto farthest = [&](const SolidShape& shape) {
+double overlap_along(const ContactShape& a, const ContactShape& b, const glm::dvec3& direction) {
+    const auto farthest = [&](const ContactShape& shape) {
         double extent = 0;
         for (int corner = 0; corner < 8; ++corner) {
             glm::dvec3 point(0);
@@ -45,7 +45,7 @@ double overlap_along(const SolidShape& a, const SolidShape& b, const glm::dvec3&
 }
 
 /// The least overlap over many directions: an upper bound of the true one, and close to it.
-double least_overlap(const SolidShape& a, const SolidShape& b) {
+double least_overlap(const ContactShape& a, const ContactShape& b) {
     constexpr int kDirections = 40000;
     double least = INFINITY;
     for (int i = 0; i < kDirections; ++i) {
@@ -102,7 +102,7 @@ TEST_CASE("floating contact: closed forms of balls and boxes") {
     CHECK(balls->point.x == test::near(0.875f));
     CHECK_FALSE(find_contact(ball_at({0, 0, 0}, 1), ball_at({1.8f, 0, 0}, 0.75f)));
 
-    const SolidShape box = box_at({0, 0, 0}, {1, 2, 3});
+    const ContactShape box = box_at({0, 0, 0}, {1, 2, 3});
     const auto face = find_contact(ball_at({1.4f, 0.5f, -1}, 0.5f), box);
     REQUIRE(face);
     CHECK(face->depth == test::near(0.1f));
@@ -136,10 +136,10 @@ TEST_CASE("floating contact: boxes overlap by the least overlap of 40,000 direct
         const auto turned = [&] {
             return glm::normalize(Quat(any(random), any(random), any(random), any(random) + 0.01f));
         };
-        const SolidShape a = box_at(
+        const ContactShape a = box_at(
             {any(random), any(random), any(random)},
             0.6f + 0.4f * Vec3(any(random), any(random), any(random)), turned());
-        const SolidShape b = box_at(
+        const ContactShape b = box_at(
             {any(random), any(random), any(random)},
             0.6f + 0.4f * Vec3(any(random), any(random), any(random)), turned());
         const double least = least_overlap(a, b);

@@ -62,6 +62,11 @@ struct ModelParser {
     }
     Status read_transform(std::string_view kind) {
         FaceParameter& parameter = model.parameters.back();
+        if (has_transform) {
+            return fail(
+                "{}: found a second transform of {}, expected one", lines.position(),
+                parameter.name);
+        }
         parameter.vector = LIMN_TRY(vector("three numbers"));
         if (kind == "rotate") {
             parameter.transform = FaceTransform::Rotate;

@@ -34,7 +34,7 @@ Mat3 infant_scale(const PersonFrame& frame, std::size_t joint) {
         case PersonJoint::Neck:
             return axis_scale({0.80f, 0.70f, 0.84f});
         default:
-            return Mat3(1.40f);
+            return Mat3(1.44f);
         }
     }
     switch (static_cast<SideJoint>(place.own)) {

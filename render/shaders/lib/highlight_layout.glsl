@@ -29,6 +29,7 @@ void to_cell(vec2 place, out vec2 at, out vec2 cell) {
 
 // Position in the map, -1 .. 1, of a direction of any length.
 vec2 map_place(vec3 w) {
+    w = dot(w, w) > 1e-10 ? w : vec3(0.0, 0.0, 1.0);  // between opposite directions
 #if ENVIRONMENT_LAYOUT == 1
     vec3 unit = normalize(w);
     return vec2(atan(unit.x, unit.z), 2.0 * asin(clamp(unit.y, -1.0, 1.0))) * 0.318309886;

@@ -18,7 +18,7 @@ void add_match_states(
     Query<const MotionMatch, With<Skeleton>, Without<MotionMatchState>> states,
     Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses,
     Query<const MotionMatch, const MotorPose, const Walk, Without<MatchHandover>> handovers,
-    Commands commands) {
+    Query<const MotionMatchState, Without<MotionMatch>> left, Commands commands) {
     states.each([&](Entity entity, const MotionMatch& match) {
         MotionMatchState state;
         // So that not all characters search in the same step.
@@ -30,6 +30,11 @@ void add_match_states(
     poses.each([&](Entity entity, const MotionMatch&) { commands.add(entity, MatchPose{}); });
     handovers.each([&](Entity entity, const MotionMatch&, const MotorPose&, const Walk&) {
         commands.add(entity, MatchHandover{});
+    });
+    left.each([&](Entity entity, const MotionMatchState&) {
+        commands.remove<MotionMatchState>(entity);
+        commands.remove<MatchPose>(entity);
+        commands.remove<MatchHandover>(entity);
     });
 }
 
@@ -76,6 +81,7 @@ void update_motion_matching(
             WalkState* walk, MotionMatchState& state, MatchPose& pose, Transform& transform) {
             const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
             if (database == nullptr || database->rows.count == 0) {
+                state.away = 1;  // the walk and the motor pose it
                 return;
             }
             const MatchContext context = {

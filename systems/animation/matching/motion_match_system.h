@@ -26,7 +26,7 @@ void add_match_states(
     Query<const MotionMatch, With<Skeleton>, Without<MotionMatchState>> states,
     Query<const MotionMatch, With<Skeleton>, Without<MatchPose>> poses,
     Query<const MotionMatch, const MotorPose, const Walk, Without<MatchHandover>> handovers,
-    Commands commands);
+    Query<const MotionMatchState, Without<MotionMatch>> left, Commands commands);
 
 /// Makes databases that are used for the first time, with the takes of their walks. Warns of one
 /// without a frame to search; its characters keep their other poses.
