@@ -69,6 +69,8 @@ std::span<const MeshKind> mesh_kinds() {
             "creature", "an animal on four legs that faces z, with skeleton, skin and clips"),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<DodecahedronShape, make_dodecahedron>(
+            "dodecahedron", "twelve pentagons, or some of them"),
         mesh_kind<FinsShape, make_fins>(
             "fins", "cards on the edges of another mesh, for its fur where it is seen edge-on"),
         mesh_kind<FragmentsShape, make_fragments>(
@@ -107,8 +109,6 @@ std::span<const MeshKind> mesh_kinds() {
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
         mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
-        mesh_kind<DodecahedronShape, make_dodecahedron>(
-            "dodecahedron", "twelve pentagons, or some of them"),
         mesh_kind<TriangleShape, make_triangle>("triangle", "an equilateral triangle that faces z"),
         mesh_kind<VaultShape, make_vault>("vault", "a pointed cross vault over a rectangle"),
         mesh_kind<MasonryWall, make_wall>(
