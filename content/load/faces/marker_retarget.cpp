@@ -22,6 +22,7 @@
 namespace limn {
 namespace {
 
+constexpr float kSameChart = 0.002f;  // between vertices of one place, in texture coordinates
 constexpr float kMaxChart = 0.03f;  ///< from a place to the nearest vertex, in texture coordinates
 constexpr float kRidge = 4e-3f;     ///< cost of weights, of the square motion of the largest shape
 constexpr int kSweeps = 40;         ///< of coordinate descent
@@ -157,19 +158,22 @@ const MeshData* find_skin(const GltfScene& face) {
     return skin;
 }
 
-/// Nearest vertex by texture coordinates, or none.
+/// Nearest vertex by texture coordinates, or none; of those about as near the foremost, since gums
+/// and teeth may lie behind lips.
 std::optional<std::uint32_t> vertex_at(const MeshData& skin, const Vec2& chart) {
     const std::vector<Vec2>& uvs = skin.uvs1.empty() ? skin.uvs : skin.uvs1;
-    std::optional<std::uint32_t> nearest;
     float distance = kMaxChart;
-    for (std::uint32_t v = 0; v < uvs.size(); ++v) {
-        const float away = glm::distance(uvs[v], chart);
-        if (away < distance) {
-            distance = away;
-            nearest = v;
+    for (const Vec2& uv : uvs) {
+        distance = std::min(distance, glm::distance(uv, chart));
+    }
+    std::optional<std::uint32_t> found;
+    for (std::uint32_t v = 0; v < uvs.size() && distance < kMaxChart; ++v) {
+        if (glm::distance(uvs[v], chart) <= distance + kSameChart
+            && (!found || skin.positions[v].z > skin.positions[*found].z)) {
+            found = v;
         }
     }
-    return nearest;
+    return found;
 }
 
 /// Root of the mean squared distance from the mean of some points.
