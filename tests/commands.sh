@@ -80,6 +80,7 @@ echo '{"face": "face.glb", "degree": 1, "size": 16, "poses": [{"image": "a.png",
         echo
     done
 } >"$folder/take.trc"
+printf 'mesh model.obj\nparameter jaw\nrotate 1 0 0 by 25 about 0 0 0\nvertex 3 1\n' >"$folder/face.txt"
 
 # A person of ten joints that takes a step, as BVH and HTR, and markers of the body.
 leg() {
