@@ -34,11 +34,12 @@ expect() {
     local got=$?
     [ $got = "$code" ] || fail "$*: exit status $got, expected $code"
 }
-# One process's frames; job's frames are equal to them bit for bit.
+# The frames of JOB are equal bit for bit to those of one process, in ONE.
 same_as_one() {
+    local one=${2:-one}
     local file
-    [ "$(ls "$1"/frames | wc -l)" = "$(ls one | wc -l)" ] || fail "$(ls "$1"/frames | wc -l) files in frames/, expected $(ls one | wc -l)"
-    for file in one/*; do cmp "$file" "$1/frames/${file#one/}" || fail "$file differs"; done
+    [ "$(ls "$1"/frames | wc -l)" = "$(ls "$one" | wc -l)" ] || fail "$(ls "$1"/frames | wc -l) files in frames/, expected $(ls "$one" | wc -l)"
+    for file in $one/*; do cmp "$file" "$1/frames/${file#$one/}" || fail "$file differs"; done
 }
 nothing_runs() { ! pgrep -af "farm (work|draw|coordinate) $work/$1" >log.txt || fail "processes are left"; }
 # Until COMMAND succeeds, or SECONDS pass.
@@ -68,6 +69,10 @@ case_one() {  # what all others are compared with
 }
 
 case_slurm() {
+    # Large frames: a renderer and a node are to be lost while they draw.
+    local args=(scene/turn.level.json --size 512x288 --fps 10)
+    mkdir large
+    expect 0 "$limn" render "${args[@]}" --frames 0:23 -o large/frame_%03d.png
     eval "$("$here/slurm_cluster.sh" up)" || fail "no cluster"
     timeout 150 "$limn" farm slurm $(frames 0:23 slurm_job) --chunk 2 --verify 10% >slurm.txt 2>&1 &
     local watcher=$! victim
@@ -80,7 +85,7 @@ case_slurm() {
     "$here/slurm_cluster.sh" kill-node n2
     while kill -0 $watcher 2>/dev/null; do honest slurm_job; sleep 1; done
     wait $watcher || { cp slurm.txt log.txt; fail "limn farm slurm failed"; }
-    same_as_one slurm_job
+    same_as_one slurm_job large
     [ "$(field slurm_job '[.nodes[].lost] | add')" -gt 0 ] || fail "status names no lost process"
     jq -es 'map(.attempts | length) | max > 1' slurm_job/state/*/*.json >/dev/null || fail "no frame was tried twice, although a renderer was killed"
     [ "$(field slurm_job .verified)" = 3 ] && [ "$(field slurm_job .verified_bits)" = 3 ] || fail "second renderings are missing"
