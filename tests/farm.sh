@@ -75,10 +75,10 @@ case_slurm() {
     expect 0 "$limn" render "${args[@]}" --frames 0:23 -o large/frame_%03d.png
     eval "$("$here/slurm_cluster.sh" up)" || fail "no cluster"
     timeout 150 "$limn" farm slurm $(frames 0:23 slurm_job) --chunk 2 --verify 10% >slurm.txt 2>&1 &
-    local watcher=$! victim
+    local watcher=$!
     await 30 done_at_least slurm_job 1
-    victim=$(pgrep -f "farm draw $work/slurm_job" | head -1)  # a renderer
-    [ -n "$victim" ] && kill -9 "$victim"
+    await 30 draws slurm_job n1
+    pkill -9 -f "farm draw $work/slurm_job"  # the renderers of both nodes
     honest slurm_job
     await 30 done_at_least slurm_job 6
     await 30 draws slurm_job n2
