@@ -1,5 +1,6 @@
 #include "ecs/base/rotation.h"
 #include "ecs/components/all.h"
+#include "ecs/components/time.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/floating_body.h"
