@@ -50,7 +50,14 @@ await() {
     fail "waited $seconds s for: $*"
 }
 done_at_least() { [ -e "$1/job.json" ] && [ "$(field "$1" .done)" -ge "$2" ]; }
-draws() { [ "$(field "$1" "[.nodes[] | select(.name == \"$2\") | .drawing[]] | length")" != 0 ]; }
+# A renderer of JOB, on NODE or anywhere, is stopped in the middle of a frame: however fast the machine is, what is killed then is killed while it draws.
+caught() {
+    pkill -STOP -f "farm draw $work/$1" || return
+    sleep 0.3  # whoever has just finished a frame has said so by then
+    [ "$(field "$1" "[.nodes[] | select(\"${2:-}\" == (\"\", .name)) | .drawing[]] | length")" != 0 ] && return
+    pkill -CONT -f "farm draw $work/$1"
+    return 1
+}
 # What status says at any time: no frame counts as done whose file is not whole, numbers add up.
 honest() {
     local before after said
@@ -77,12 +84,13 @@ case_slurm() {
     timeout 150 "$limn" farm slurm $(frames 0:23 slurm_job) --chunk 2 --verify 10% >slurm.txt 2>&1 &
     local watcher=$!
     await 30 done_at_least slurm_job 1
-    await 30 draws slurm_job n1
+    await 30 caught slurm_job n1
     pkill -9 -f "farm draw $work/slurm_job"  # the renderers of both nodes
     honest slurm_job
     await 30 done_at_least slurm_job 6
-    await 30 draws slurm_job n2
+    await 30 caught slurm_job n2
     "$here/slurm_cluster.sh" kill-node n2
+    pkill -CONT -f "farm draw $work/slurm_job"
     while kill -0 $watcher 2>/dev/null; do honest slurm_job; sleep 1; done
     wait $watcher || { cp slurm.txt log.txt; fail "limn farm slurm failed"; }
     same_as_one slurm_job large
@@ -202,13 +210,14 @@ case_failures() {
     # Without progress: ended, and tried again.
     "$limn" farm local $(frames 0:23 hung_job) --chunk 12 --timeout 2 >hung.txt 2>&1 &
     await 20 done_at_least hung_job 2
-    pkill -STOP -f "farm draw $work/hung_job"
+    await 20 caught hung_job
     wait $! || fail "a frame that hung was not tried again"
     grep -q 'no progress for 2 s' hung_job/state/*/*.json || fail "no state names the hang"
     same_as_one hung_job
     # A killed process.
     "$limn" farm local $(frames 0:23 killed_job) --chunk 24 --slots 1 >killed.txt 2>&1 &
     await 20 done_at_least killed_job 2
+    await 20 caught killed_job
     pkill -9 -f "farm draw $work/killed_job"
     wait $! || fail "the frame was not tried again"
     grep -q 'ended by signal 9' killed_job/state/*/*.json || fail "no state names the signal"
