@@ -3,6 +3,7 @@
 #include "render/environment/airlight_pass.h"
 #include "render/environment/environment_pass.h"
 #include "render/environment/fog_pass.h"
+#include "render/environment/panorama_layer_pass.h"
 #include "render/environment/probe_pass.h"
 #include "render/environment/sky_pass.h"
 #include "render/geometry/aov_pass.h"
@@ -75,7 +76,9 @@ constexpr EffectEntry kImage[] = {
     effect<LightEffect>(kSceneViews),
     effect<ShadingComparisonEffect>(kMainViews),         // two methods as one image
     effect<SubsurfaceEffect>(kMainViews | kMirrorView),  // subsurface scattering
-    effect<SkyEffect>(kSceneViews), effect<MirrorCausticEffect>(kSceneViews),
+    effect<SkyEffect>(kSceneViews),
+    effect<PanoramaLayerEffect>(kSceneViews),  // over the sky
+    effect<MirrorCausticEffect>(kSceneViews),
     effect<HatchingEffect>(kMainViews),  // of everything opaque; before what lies over it
     effect<InkLinesEffect>(kMainViews),  // over the strokes
     effect<ParticlesUnderWaterEffect>(kSceneViews),  // visible through the water

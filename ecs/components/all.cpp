@@ -46,6 +46,7 @@
 #include "ecs/components/move_intent.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/panorama_layer.h"
 #include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
@@ -274,6 +275,7 @@ void register_all_components() {
     register_component<Autofocus>();
     register_component<LensFlare>();
     register_component<Dazzle>();
+    register_component<PanoramaLayer>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();

@@ -141,6 +141,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.object-step", "init, step and draw of an object"},
     {"engine.object-text", "level file format"},
     {"engine.opt-texture", "texture compression, BC5, BC7, DDS, mip levels"},
+    {"engine.panorama", "panorama, skybox, backdrop of distant hills"},
     {"engine.param-access", "fields by name"},
     {"engine.param-desc", "reflection: descriptions of fields"},
     {"engine.particle-cpu", "CPU particles as billboards"},

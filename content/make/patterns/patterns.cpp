@@ -15,6 +15,7 @@
 #include "content/make/patterns/pattern_tools.h"
 #include "content/make/patterns/puff_pattern.h"
 #include "content/make/patterns/relief_patterns.h"
+#include "content/make/patterns/ridge_pattern.h"
 #include "content/make/patterns/solid_pattern.h"
 #include "content/make/patterns/sprite_patterns.h"
 #include "content/make/patterns/studio_pattern.h"
@@ -434,6 +435,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<PuffPattern, make_puff>(
             "puff", "a flipbook of a cloud, with the light that it scatters from six sides",
             PatternKindMaps::Light),
+        pattern_kind<RidgePattern, make_ridges>(
+            "ridges", "wooded hills on the horizon, crest behind crest, for a panorama_layer"),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
             "rose_window", "a round window of stained glass; black outside the glass"),
