@@ -76,6 +76,7 @@ enum class SampleMean : std::uint8_t {
 struct FrameStatistics {
     int instances = 0;           ///< with mesh, material and transform
     int visible_instances = 0;   ///< after culling
+    int tested_boxes = 0;        ///< against the frustum, of instances and around groups of them
     int draws = 0;               ///< submitted for geometry; a multi-draw counts as one
     std::int64_t triangles = 0;  ///< submitted
     int deformed = 0;            ///< instances whose shape changed and was drawn

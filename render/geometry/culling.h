@@ -17,7 +17,12 @@ namespace limn {
 //
 // The kernel works on structure-of-arrays blocks with Highway; tests compare it with the scalar
 // version.
-// Techniques: fakephong.pipeline
+//
+// Blocks have a box around all of their boxes, and one around each group of neighbors: where that
+// is outside the frustum, or wholly inside, none of its boxes is tested by itself. Neighbors are
+// rows of one archetype, so that what was made together, as by a repeat, is culled together.
+//
+// Techniques: engine.hier-bounds, fakephong.pipeline
 
 inline constexpr int kFrustumPlanes = 5;
 
@@ -77,6 +82,26 @@ struct BoxBlock {
 /// visible[i] = 1 if box i of the first `count` may be visible, else 0.
 void cull_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
+
+/// What a frustum has of a box. A box so near to a plane that rounding decides is Partly.
+enum class Containment : std::uint8_t { Outside, Partly, Inside };
+[[nodiscard]] Containment contains(const Frustum& frustum, const Bounds& box);
+
+/// Boxes around the boxes of a block: of all, and of each group of neighbors (engine.hier-bounds).
+inline constexpr int kCullGroup = 64;
+struct BlockBounds {
+    Bounds all;
+    Bounds groups[kCullBlock / kCullGroup];
+};
+/// Of the first `count` boxes. With one that cannot be drawn, of negative half extent, a group
+/// never decides for its boxes.
+[[nodiscard]] BlockBounds bounds_around(const BoxBlock& boxes, int count);
+
+/// cull_boxes() with the same result: boxes are tested only where the box around all, and that of
+/// their group, is neither outside nor inside. Returns how many boxes of any kind it has tested.
+int cull_boxes_within(
+    const Frustum& frustum, const BlockBounds& around, const BoxBlock& boxes, int count,
+    std::span<std::uint8_t> visible);
 
 /// Whether the sphere touches the box (shadow.caster-cull); one of infinite radius touches all.
 [[nodiscard]] inline bool

@@ -159,6 +159,7 @@ void GbufferEffect::report(const FrameData&, const ViewData& view, FrameOutput& 
         out.statistics.instances = list->total;
         out.statistics.visible_instances = list->visible;
         out.statistics.draws = static_cast<int>(list->opaque.size() + list->blended.size());
+        out.statistics.tested_boxes = list->tested;
         out.statistics.triangles = list->triangles;
     }
 }

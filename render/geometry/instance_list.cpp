@@ -178,6 +178,9 @@ void InstanceCollector::collect_from(
     commands_.clear();
     assign_slots(items, selection.velocity, list);
     list.visible = static_cast<int>(visible_count_);
+    for (const BlockWork& work : blocks_) {
+        list.tested += work.tested;
+    }
     list.opaque_instances = static_cast<int>(opaque_count_);
     if (selection.boxes) {
         list.boxes.resize((visible_count_ + kCullBlock - 1) / kCullBlock);
@@ -203,13 +206,14 @@ void InstanceCollector::count_block(
     const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
     BlockWork& work) const {
     KeyTable table(work.keys);
+    work.tested = 0;
     if (selection.casters != nullptr ? !block.casts_shadows : !block.visible) {
         return;
     }
     const BoxBlock& boxes = block.boxes;
     const auto count = static_cast<int>(block.size());
     std::uint8_t visible[kCullBlock];
-    cull_boxes(selection.frustum, boxes, count, visible);
+    work.tested = cull_boxes_within(selection.frustum, block.around, boxes, count, visible);
     if (selection.casters != nullptr) {
         cull_visible_boxes(selection.shading, boxes, count, visible);
         cull_boxes_by_distance(selection.eye, selection.range, boxes, count, visible);

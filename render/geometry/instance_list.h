@@ -50,6 +50,7 @@ struct InstanceList {
         without_tangents;  ///< meshes whose normal map is dropped for lack of tangents
     int total = 0;
     int visible = 0;
+    int tested = 0;            ///< boxes against the frustum, of items and around blocks of them
     int opaque_instances = 0;  ///< these come first in `instances`
     std::int64_t triangles = 0;
 };
@@ -108,6 +109,7 @@ class InstanceCollector {
     };
     struct BlockWork {
         std::vector<KeyCount> keys;
+        int tested = 0;                   ///< boxes
         std::uint16_t local[kCullBlock];  ///< index into keys; kHidden if not drawn
     };
     struct Entry {

@@ -361,6 +361,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
              .batch = batch,
              .index = deformed ? shape : mesh});
     }
+    block.around = bounds_around(boxes, static_cast<int>(block.size()));
 }
 
 void RenderItems::hash_casters() {

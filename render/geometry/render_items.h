@@ -88,6 +88,7 @@ struct RenderItemBlock {
     /// World-space boxes. Items that cannot be drawn (no such mesh, no triangles, a transform that
     /// is not finite) have a box outside every frustum.
     BoxBlock boxes;
+    BlockBounds around;  ///< of `boxes`
     DrawKey keys[kCullBlock];
     /// Hash of everything that changes the item's shadow; 0: blended, casts no shadow. Computed by
     /// RenderItems::hash_casters().

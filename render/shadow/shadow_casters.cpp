@@ -48,7 +48,7 @@ void hash_casters(
             const auto rows = static_cast<int>(block.size());
             std::uint8_t visible[kCullBlock];
             for (std::size_t v = 0; v < count; ++v) {
-                cull_boxes(volumes[v].frustum, block.boxes, rows, visible);
+                cull_boxes_within(volumes[v].frustum, block.around, block.boxes, rows, visible);
                 cull_visible_boxes(volumes[v].shading, block.boxes, rows, visible);
                 cull_boxes_by_distance(
                     volumes[v].eye, volumes[v].range, block.boxes, rows, visible);

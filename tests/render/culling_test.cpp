@@ -1,10 +1,12 @@
 #include "render/geometry/culling.h"
 #include "render/render_view.h"
+#include "tests/near.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+#include <cmath>
 #include <memory>
 #include <random>
 
@@ -125,6 +127,100 @@ TEST_CASE(
     put(*block, 0, {Vec3(0, 0, 2) - unit, Vec3(0, 0, 2) + unit});
     cull_boxes(make_frustum(far_near.clip_from_world), *block, 1, visible);
     CHECK(visible[0] == 0);
+}
+
+TEST_CASE(
+    "culling: blocks of boxes are culled as their boxes are one by one, with fewer tests where "
+    "those "
+    "lie together"
+    * technique("engine.hier-bounds")) {
+    std::mt19937 random(23);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    constexpr int kClusters = 400;
+    constexpr int kCluster = 200;
+    const auto block = std::make_unique<BoxBlock>();
+    std::uint8_t fast[kCullBlock];
+    std::uint8_t slow[kCullBlock];
+    int tested = 0;
+    int seen[3] = {};
+    for (int b = 0; b < kClusters; ++b) {
+        const Vec3 middle = {40 * unit(random), 40 * unit(random), 40 * unit(random)};
+        for (int i = 0; i < kCluster; ++i) {
+            const Vec3 c = middle + 2.0f * Vec3(unit(random), unit(random), unit(random));
+            const Vec3 h = 0.3f * Vec3(1 + unit(random), 1 + unit(random), 1 + unit(random));
+            put(*block, i, {c - h, c + h});
+        }
+        const BlockBounds around = bounds_around(*block, kCluster);
+        for (int i = 0; i < kCluster; ++i) {
+            const Bounds& group = around.groups[i / kCullGroup];
+            for (const Bounds* const box : {&around.all, &group}) {
+                REQUIRE(glm::all(glm::lessThanEqual(box->min, block->center(i) - block->half(i))));
+                REQUIRE(
+                    glm::all(glm::greaterThanEqual(box->max, block->center(i) + block->half(i))));
+            }
+        }
+        if (b == 7) {  // one that cannot be drawn
+            block->set(3, Vec3(0), Vec3(-1e30f));
+            const Frustum everything = {
+                {{1, 0, 0, 1e4f},
+                 {-1, 0, 0, 1e4f},
+                 {0, 1, 0, 1e4f},
+                 {0, -1, 0, 1e4f},
+                 {0, 0, 1, 1e4f}}};
+            cull_boxes_within(everything, bounds_around(*block, kCluster), *block, kCluster, fast);
+            CHECK(fast[3] == 0);
+            CHECK(fast[4] == 1);
+            continue;
+        }
+        const Frustum frustum = make_frustum(random_view(random).clip_from_world);
+        const int tests = cull_boxes_within(frustum, around, *block, kCluster, fast);
+        cull_boxes_scalar(frustum, *block, kCluster, slow);
+        for (int i = 0; i < kCluster; ++i) {
+            REQUIRE(fast[i] == slow[i]);
+        }
+        const Containment all = contains(frustum, around.all);
+        CHECK((tests == 1) == (all != Containment::Partly));
+        CHECK(tests <= 1 + kCluster + 4);
+        ++seen[static_cast<int>(all)];
+        tested += tests;
+    }
+    CHECK(tested < kClusters * kCluster / 2);
+    for (const int count : seen) {
+        CHECK(count > kClusters / 50);
+    }
+}
+
+TEST_CASE(
+    "culling: a box at a plane is decided by its items, an empty one is in no frustum"
+    * technique("engine.hier-bounds")) {
+    const Frustum slab = {{{1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}};
+    const auto at = [](float low, float high) {
+        return Bounds{Vec3(low, -1, -1), Vec3(high, 1, 1)};
+    };
+    CHECK(contains(slab, at(-0.5f, 0.5f)) == Containment::Inside);
+    CHECK(contains(slab, at(0.5f, 1.5f)) == Containment::Partly);
+    CHECK(contains(slab, at(1.5f, 2.5f)) == Containment::Outside);
+    CHECK(contains(slab, at(-1, 1)) == Containment::Partly);
+    CHECK(contains(slab, at(1, 2)) == Containment::Partly);
+    CHECK(contains(slab, {}) == Containment::Outside);
+    CHECK(contains(slab, {Vec3(-1e30f), Vec3(1e30f)}) == Containment::Partly);
+    CHECK(contains(slab, {Vec3(-INFINITY), Vec3(INFINITY)}) == Containment::Partly);
+}
+
+TEST_CASE(
+    "culling: a turned box by its closed form; the identity keeps it"
+    * technique("engine.hier-bounds")) {
+    const Bounds cube = {Vec3(-0.5f), Vec3(0.5f)};
+    const Affine turn =
+        affine_from({0, 0, 0}, glm::angleAxis(radians(45.0f), Vec3(0, 0, 1)), Vec3(1));
+    const Vec3 half = half_extent(transform_bounds(turn, cube));
+    CHECK(half.x == test::near(0.707107f).epsilon(1e-6));
+    CHECK(half.y == test::near(0.707107f).epsilon(1e-6));
+    CHECK(half.z == test::near(0.5f).epsilon(1e-6));
+    const Bounds box = {{-2, 3, -7}, {1, 4, 9}};
+    const Bounds same = transform_bounds(affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(1)), box);
+    CHECK(same.min == box.min);
+    CHECK(same.max == box.max);
 }
 
 TEST_CASE("culling: a transformed box contains every transformed corner, tightly if only scaled") {

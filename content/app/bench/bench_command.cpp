@@ -174,6 +174,8 @@ void run_bench_frame(
     add(BenchKind::Frame, BenchClock::Gpu, "passes", gpu_ms);
     report->draws = frame.statistics.draws;
     report->triangles = frame.statistics.triangles;
+    report->instances = frame.statistics.visible_instances;
+    report->tested_boxes = frame.statistics.tested_boxes;
     report->programs = frame.statistics.programs;
     report->compiled += frame.statistics.compiled;
 }

@@ -14,7 +14,7 @@ namespace limn {
 // Shown by `limn bench fakephong`: fakephong.forward-difference, fakephong.metric-efficiency
 // Shown by `limn bench gallery`: engine.multi-material, shade.batching
 // Shown by `limn bench lights`: engine.visibility-sets
-// Shown by `limn bench stress-instances`: engine.batching, shade.stream-kernel
+// Shown by `limn bench stress-instances`: engine.batching, engine.hier-bounds, shade.stream-kernel
 
 struct BenchReport;
 struct HeadlessRenderer;

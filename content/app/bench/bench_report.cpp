@@ -65,12 +65,14 @@ std::string bench_table(const BenchReport& report) {
     fmt::format_to(
         out,
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
-        "{} entities, {} draws, {} triangles, {:.0f} MiB resident ({:+.1f} since the warm-up), "
+        "{} entities, {} boxes tested for {} instances in view, {} draws, {} triangles\n{:.0f} MiB "
+        "resident ({:+.1f} since the warm-up), "
         "{:.0f} MiB of render "
         "targets\n{} shader programs, compiled and run once in {:.0f} ms; {} more later\n\n",
         report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
-        report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
-        report.resident_mib, report.resident_mib - report.resident_begin_mib, report.gpu_mib,
+        report.gl_renderer, report.gl_version, report.entities, report.tested_boxes,
+        report.instances, report.draws, report.triangles, report.resident_mib,
+        report.resident_mib - report.resident_begin_mib, report.gpu_mib,
         report.programs - report.compiled, report.compile_ms, report.compiled);
     fmt::format_to(out, "{:<34} {:>3} {:>11} {:>11} {:>11}\n", "[ms]", "", "median", "p95", "max");
     for (const BenchKind kind : kReportKinds) {
@@ -114,6 +116,8 @@ std::string bench_json(const BenchReport& report) {
           {"gpu_mib", report.gpu_mib}}},
         {"counts",
          {{"entities", report.entities},
+          {"boxes_tested", report.tested_boxes},
+          {"instances", report.instances},
           {"draws", report.draws},
           {"triangles", report.triangles},
           {"programs", report.programs},

@@ -39,6 +39,8 @@ struct BenchReport {
     std::int64_t entities = 0;
     std::int64_t draws = 0;      ///< of the last frame
     std::int64_t triangles = 0;  ///< of the last frame
+    int instances = 0;           ///< in view, of the last frame
+    int tested_boxes = 0;        ///< FrameStatistics::tested_boxes of the last frame
     int programs = 0;            ///< shader programs, after the last frame
     int compiled = 0;            ///< of them, in the measured frames
     double compile_ms = 0.0;     ///< before the first frame, for all programs that the level needs

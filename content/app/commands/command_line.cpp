@@ -130,7 +130,7 @@ CPU time, which depends less on other programs. Shaders are compiled before the 
 
 JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer", "version"},
 "memory": {"resident_begin_mib", "resident_mib", "heap_begin_mib", "heap_mib", "gpu_mib"},
-"counts": {"entities", "draws", "triangles", "programs", "compiled"}, "compile_ms", and arrays
+"counts": {"entities", "boxes_tested", "instances", "draws", "triangles", "programs", "compiled"}, "compile_ms", and arrays
 "frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"}}
 CSV: kind,name,clock,median_ms,p95_ms,max_ms
 

@@ -183,6 +183,7 @@ void ProfilerPanel::draw_counts(
     pair("triangles", static_cast<double>(statistics.triangles), "{:.0f}");
     pair("visible", statistics.visible_instances, "{:.0f}");
     pair("instances", statistics.instances, "{:.0f}");
+    pair("boxes tested", statistics.tested_boxes, "{:.0f}");
     pair("lights", statistics.lights, "{:.0f}");
     pair("entities", static_cast<double>(world.entity_count()), "{:.0f}");
     pair("programs", statistics.programs, "{:.0f}");

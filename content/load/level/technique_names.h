@@ -128,6 +128,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.draw-frame", "order of the passes of a frame"},
     {"engine.explode", "mesh that breaks into pieces"},
     {"engine.explosion", "explosion"},
+    {"engine.hier-bounds", "hierarchical bounds, frustum culling of groups"},
     {"engine.lens-flare", "lens flare, ghosts"},
     {"engine.light-falloff", "smooth light falloff at a radius"},
     {"engine.light-loops", "single-pass and multi-pass lighting"},
