@@ -4,6 +4,7 @@
 #include "content/make/models/bar.h"
 #include "content/make/models/boat.h"
 #include "content/make/models/body_part.h"
+#include "content/make/models/boulder.h"
 #include "content/make/models/fragments.h"
 #include "content/make/models/fur_strands.h"
 #include "content/make/models/hovercraft.h"
@@ -63,6 +64,8 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
         mesh_kind<BodyPartShape, make_body_part>(
             "body_part", "a hand, a foot or a forearm, upright, with its back to z"),
+        mesh_kind<BoulderShape, make_boulder>(
+            "boulder", "a ball cut by planes, with worn edges and rough faces"),
         mesh_kind<BoxShape, make_box>("box", "a box, optionally with rounded edges"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
         rigged_kind<CreatureShape, make_creature, make_creature_rig>(

@@ -1,5 +1,6 @@
 #include "content/bake/tangents.h"
 #include "content/make/make_mesh.h"
+#include "content/make/models/boulder.h"
 #include "content/make/models/shapes.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/near.h"
@@ -30,7 +31,7 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 35);
+    REQUIRE(mesh_kinds().size() == 36);
     for (const MeshKind& kind : mesh_kinds()) {
         const std::string name = kind.name;
         if (kind.make_rig != nullptr || name == "hovercraft" || name == "boat"
@@ -45,11 +46,13 @@ TEST_CASE(
         INFO(name);
         const MeshData mesh = make_default(kind);
         check_arrays(mesh);
-        // The lip of the teapot's spout and the rocks of the terrain are sharper than their quads.
+        // The lip of the teapot's spout, the rocks of the terrain and the edges of a boulder are
+        // sharper than their quads.
         CHECK(
             worst_facing(mesh)
             > (name == "teapot"         ? 0.2f
                : name == "terrain"      ? 0.5f
+               : name == "boulder"      ? 0.5f
                : name == "dodecahedron" ? 0.75f
                                         : 0.95f));
     }
@@ -98,8 +101,43 @@ TEST_CASE("shapes: closed shapes are watertight") {
     CHECK(open_edges(make_cylinder({.segments = 17, .divisions = 3})) == 0);
     CHECK(open_edges(make_cone({})) == 0);
     CHECK(open_edges(make_cone({.top_radius = 0.2f})) == 0);
+    CHECK(open_edges(make_boulder({})) == 0);
     CHECK(open_edges(make_disc({.segments = 12})) == 12);
     CHECK(open_edges(make_plane({.divisions = 3})) == 12);
+}
+
+TEST_CASE("shapes: a boulder is as large as it says, another by seed, and flatter than a ball") {
+    const BoulderShape shape = {.size = {2, 1, 1.5f}, .roughness = 0, .segments = 96, .rings = 48};
+    const MeshData boulder = make_boulder(shape);
+    const Vec3 extent = boulder.bounds.max - boulder.bounds.min;
+    for (int axis = 0; axis < 3; ++axis) {
+        CHECK(extent[axis] < 1.25f * shape.size[axis]);
+        CHECK(extent[axis] > 0.75f * shape.size[axis]);
+    }
+    const double ellipsoid = kPiD / 6 * 2 * 1 * 1.5;
+    CHECK(signed_volume(boulder) < 1.1 * ellipsoid);
+    CHECK(signed_volume(boulder) > 0.5 * ellipsoid);
+    BoulderShape other = shape;
+    other.seed = 2;
+    CHECK(make_boulder(other).positions != boulder.positions);
+    // Of a fresh one, most of the surface faces one of a few directions.
+    const auto largest_cluster = [](const MeshData& mesh) {
+        std::size_t most = 0;
+        for (std::size_t i = 0; i < mesh.normals.size(); i += 31) {
+            std::size_t alike = 0;
+            for (const Vec3& n : mesh.normals) {
+                alike += glm::dot(n, mesh.normals[i]) > 0.995f ? 1 : 0;
+            }
+            most = std::max(most, alike);
+        }
+        return most;
+    };
+    BoulderShape fresh = shape;
+    fresh.size = Vec3(1);
+    fresh.wear = 0;
+    CHECK(
+        largest_cluster(make_boulder(fresh))
+        > 3 * largest_cluster(make_sphere({.segments = 96, .rings = 48})));
 }
 
 TEST_CASE("shapes: a lathe turns its profile, closes its ends and has edges where it bends") {
