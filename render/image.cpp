@@ -109,10 +109,47 @@ constexpr EffectEntry kImage[] = {
     effect<FurrowEffect>(kMainViews | kMeanView),  // over the displayed image: colors are exact
 };
 
+/// Of what is above, what a scene is recognized by. No probes: smooth surfaces reflect the sky.
+constexpr EffectEntry kPlainImage[] = {
+    effect<TextureCombineEffect>(0),
+    effect<TextureFeedbackEffect>(0),
+    effect<TextureLayersEffect>(0),
+    effect<WrinkleMapsEffect>(0),
+    effect<TextureShadeEffect>(0),
+    effect<DeformEffect>(kSceneViews),
+    effect<WrinkleEffect>(kSceneViews),
+    effect<LightListEffect>(kSceneViews),
+    effect<EnvironmentEffect>(kSceneViews),
+    effect<GbufferEffect>(kSceneViews),
+    effect<HighlightMapEffect>(kMainViews),
+    effect<LobeTableEffect>(kSceneViews),
+    effect<NormalizationEffect>(kSceneViews),
+    effect<WaterBodiesEffect>(kSceneViews),
+    effect<ShadowEffect>(kSceneViews),
+    effect<LightEffect>(kSceneViews),
+    effect<SubsurfaceEffect>(kMainViews | kMirrorView),
+    effect<SkyEffect>(kSceneViews),
+    effect<PanoramaLayerEffect>(kSceneViews),
+    effect<ParticlesUnderWaterEffect>(kSceneViews),
+    effect<WaterEffect>(kSceneViews),
+    effect<WaterVeilEffect>(kSceneViews),
+    effect<FogEffect>(kSceneViews),
+    effect<ParticleEffect>(kSceneViews),
+    effect<BlendEffect>(kSceneViews),
+    effect<ParticleFrontEffect>(kSceneViews),
+    effect<WaterMirrorEffect>(kMirrorView),
+    effect<AovEffect>(kMainViews),
+    effect<ToneMapEffect>(kFilmViews),
+};
+
 }  // namespace
 
 std::span<const EffectEntry> standard_image() {
     return kImage;
+}
+
+std::span<const EffectEntry> plain_image() {
+    return kPlainImage;
 }
 
 }  // namespace limn

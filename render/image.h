@@ -10,4 +10,7 @@ namespace limn {
 /// own in RenderSettings::image.
 [[nodiscard]] std::span<const EffectEntry> standard_image();
 
+/// Fewer of them, for slow machines (render_profile.h).
+[[nodiscard]] std::span<const EffectEntry> plain_image();
+
 }  // namespace limn

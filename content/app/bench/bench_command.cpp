@@ -81,7 +81,8 @@ double all_threads_ms() {
 
 /// Fails if the device cannot render images of that size.
 Result<HeadlessRenderer> create_renderer_for(const BenchOptions& options) {
-    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
+    Result<HeadlessRenderer> headless =
+        create_headless_renderer(options.profile, {}, options.renderer);
     if (headless) {
         if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
             return fits.error();

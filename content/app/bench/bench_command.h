@@ -33,6 +33,7 @@ struct BenchOptions {
     std::string only;      ///< one part of `particles`, `faces` or `characters`; empty = all
     std::size_t most = 0;  ///< particles at the last point of the curves; 0 = the program's default
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
+    std::string renderer;                 ///< of render_profiles(); empty = the best
 };
 
 /// Arguments of the program that measures `particles`, `faces` or `characters`.

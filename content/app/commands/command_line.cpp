@@ -75,7 +75,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
         ->type_name("none|temporal");
     add_show(*app, options.show);
     add_model_view(*app, options.model);
-    add_profile(*app, options.profile);
+    add_profile(*app, options.profile, options.renderer);
     add_integer(
         *app, "--headless-frames", "render N frames along the camera path, without a window",
         options.headless_frames, 1, 10000);
@@ -103,7 +103,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         ->default_str(std::to_string(options.warmup));
     add_size(*app, options.size);
     add_assignments(*app, options.assignments);
-    add_profile(*app, options.profile);
+    add_profile(*app, options.profile, options.renderer);
     app->add_option("--json", options.json, "write the numbers as JSON; - is stdout")
         ->type_name("FILE");
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")

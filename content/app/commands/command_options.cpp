@@ -1,6 +1,7 @@
 #include "content/app/commands/command_options.h"
 
 #include "content/app/commands/image_file.h"
+#include "render/render_profile.h"
 
 #include <fmt/format.h>
 
@@ -48,12 +49,20 @@ void add_assignments(
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile) {
+void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile, std::string& renderer) {
     add_parsed(
         app, "--profile",
         "render as on a GPU or as on software OpenGL; default: chosen by the device", profile,
         parse_profile)
         ->type_name("gpu|software");
+    std::string names;
+    std::string docs;
+    for (const RenderProfile& each : render_profiles()) {
+        names += fmt::format("{}{}", names.empty() ? "" : "|", each.name);
+        docs += fmt::format("{}{}: {}", docs.empty() ? "" : "; ", each.name, each.doc);
+    }
+    app.add_option("--renderer", renderer, docs + "; default: the first that the device can run")
+        ->type_name(names);
 }
 
 CLI::Option* add_show(CLI::App& app, std::string& technique) {

@@ -75,7 +75,7 @@ void add_assignments(
     const std::string& doc = "change a field after loading");
 
 /// --profile of the device.
-void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile);
+void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile, std::string& renderer);
 
 /// --show of a technique.
 CLI::Option* add_show(CLI::App& app, std::string& technique);

@@ -2,6 +2,7 @@
 
 #include "content/app/commands/progress.h"
 #include "ecs/base/text.h"
+#include "render/render_profile.h"
 #include "render/render_view.h"
 
 #include <utility>
@@ -18,8 +19,9 @@ Status check_image_size(const gpu::Device& device, const IVec2& size) {
     return Done{};
 }
 
-Result<HeadlessRenderer>
-create_headless_renderer(std::optional<gpu::Profile> profile, const RenderSettings& settings) {
+Result<HeadlessRenderer> create_headless_renderer(
+    std::optional<gpu::Profile> profile, const RenderSettings& settings,
+    std::string_view renderer) {
     HeadlessRenderer headless;
     Result<std::unique_ptr<gpu::Context>> context = gpu::create_headless_context();
     if (!context) {
@@ -31,11 +33,11 @@ create_headless_renderer(std::optional<gpu::Profile> profile, const RenderSettin
         return device.error();
     }
     headless.device = *std::move(device);
-    Result<RendererPtr> renderer = create_renderer(*headless.device, settings);
-    if (!renderer) {
-        return renderer.error();
+    RenderSettings chosen = settings;
+    if (chosen.image.empty() || !renderer.empty()) {
+        chosen.image = LIMN_TRY(find_profile(headless.device->caps(), renderer))->image();
     }
-    headless.renderer = *std::move(renderer);
+    headless.renderer = LIMN_TRY(create_renderer(*headless.device, chosen));
     return headless;
 }
 

@@ -23,9 +23,11 @@ struct HeadlessRenderer {
 [[nodiscard]] Status check_image_size(const gpu::Device& device, const IVec2& size);
 
 /// Fails without OpenGL 4.5 or with a shader compiler's message. Default profile: chosen by the
-/// device.
+/// device. `renderer`: the name of a RenderProfile; empty: that of `settings`, or the first that
+/// the device can run.
 [[nodiscard]] Result<HeadlessRenderer> create_headless_renderer(
-    std::optional<gpu::Profile> profile = {}, const RenderSettings& settings = {});
+    std::optional<gpu::Profile> profile = {}, const RenderSettings& settings = {},
+    std::string_view renderer = {});
 
 /// Compiles what the world needs (warm_up, render_frame.h), for images of this size; on a terminal,
 /// with a progress line. Returns the number of programs.

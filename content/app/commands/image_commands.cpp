@@ -40,7 +40,7 @@ void add_render_options(CLI::App& app, RenderOptions& options) {
     app.add_flag("--off", options.show.off, "with --show: without the technique");
     add_assignments(app, options.assignments);
     add_model_view(app, options.model);
-    add_profile(app, options.profile);
+    add_profile(app, options.profile, options.renderer);
     app.add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
     add_film(app, options.film);

@@ -16,6 +16,8 @@ namespace limn {
 
 // Shown by `limn render --show shadow.volume-count --aov volume_layers -o layers.exr`:
 //     shadow.density-view
+// Shown by `limn render gallery --renderer plain -o plain.png`: engine.profile-select
+// Shown by `limn render stilllife --renderer plain -o plain.png`: engine.render-profile
 // Shown by `limn render museum --profile gpu -o museum.png`: shade.profile
 // Shown by `limn render museum -o museum.exr`: engine.draw-frame, hdr.float-formats, hdr.openexr
 // Shown by `limn render stilllife --spp 64 -o stilllife.png`: post.distributed-sampling
@@ -38,6 +40,7 @@ struct RenderOptions {
     std::string camera;                   ///< by name; empty = the level's
     ShowChoice show;                      ///< what to show of the level
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
+    std::string renderer;                 ///< of render_profiles(); empty = the best
     ModelViewOptions model;               ///< of a single model
     FilmSettings film;                    ///< of a film; its rate is `fps`
     bool keep_frames = false;             ///< of a film, after it is made

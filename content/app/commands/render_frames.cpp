@@ -182,7 +182,8 @@ Result<RenderSession> open_render(const RenderOptions& options) {
                         .show = options.show,
                         .model = options.model}));
     const Entity camera = LIMN_TRY(choose_camera(*stage, options.camera));
-    HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
+    HeadlessRenderer headless =
+        LIMN_TRY(create_headless_renderer(options.profile, {}, options.renderer));
     LIMN_TRY(check_image_size(*headless.device, options.size));
     return RenderSession{std::move(stage), camera, std::move(headless)};
 }

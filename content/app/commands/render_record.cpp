@@ -32,6 +32,9 @@ std::string describe_render(const RenderOptions& options) {
     add("camera", options.camera);
     add("profile",
         options.profile ? fmt::format("{}", static_cast<int>(*options.profile)) : "of the device");
+    if (!options.renderer.empty()) {
+        add("renderer", options.renderer);
+    }
     add("show", options.show.technique + (options.show.off ? " off" : ""));
     add("model",
         fmt::format(

@@ -41,7 +41,8 @@ Status play_headless(const PlayOptions& options, bool no_display) {
     if (code) {
         return fail("{}: found {}, expected a folder to write to", folder, code.message());
     }
-    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
+    Result<HeadlessRenderer> headless =
+        create_headless_renderer(options.profile, {}, options.renderer);
     if (!headless) {
         return headless.error();
     }

@@ -26,6 +26,7 @@ struct PlayOptions {
     bool scale_auto = false;  ///< adapts the scale to hold 60 frames per second
     Antialiasing antialiasing = Antialiasing::Auto;  ///< Auto: the level's, temporal if it has none
     std::optional<gpu::Profile> profile;             ///< empty = chosen by the device
+    std::string renderer;                            ///< of render_profiles(); empty = the best
     ModelViewOptions model;                          ///< of a single model
     int headless_frames = 0;  ///< > 0: renders this many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the

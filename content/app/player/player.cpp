@@ -42,11 +42,9 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
         return device.error();
     }
     std::unique_ptr<Player> player(new Player(*std::move(window), *std::move(device), options));
-    Result<RendererPtr> renderer = create_renderer(*player->device_);
-    if (!renderer) {
-        return renderer.error();
-    }
-    player->renderer_ = *std::move(renderer);
+    player->profiles_.emplace(*player->device_);
+    LIMN_TRY(player->profiles_->load(options.renderer));
+    player->renderer_ = &player->profiles_->renderer();
     Result<BufferViewer> buffers = BufferViewer::create(*player->device_);
     if (!buffers) {
         return buffers.error();

@@ -26,6 +26,7 @@
 #include "ecs/components/sound_player.h"
 #include "render/gpu/device.h"
 #include "render/render_frame.h"
+#include "render/render_profile.h"
 #include "render/render_view.h"
 
 #include <chrono>
@@ -138,6 +139,9 @@ class Player {
     [[nodiscard]] std::vector<std::filesystem::file_time_type> level_file_times() const;
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
+    /// Takes the renderer that was asked for.
+    void follow_renderer();
+    void request_next_renderer();
     /// Asks the viewer of a WrinkleTrial, and adds new answers to the file
     /// limn-<level>-answers.csv.
     void follow_trial();
@@ -148,7 +152,8 @@ class Player {
     PlayOptions options_;
     std::unique_ptr<Window> window_;
     std::unique_ptr<gpu::Device> device_;
-    RendererPtr renderer_;
+    std::optional<ProfileSwitch> profiles_;
+    Renderer* renderer_ = nullptr;  ///< of profiles_
     std::unique_ptr<Hud> hud_;
     std::optional<BufferViewer> buffers_;
     std::unique_ptr<Stage> stage_;

@@ -78,6 +78,7 @@ void Player::draw_frame(float dt, const Input& input) {
                 make_render_scale(options_.scale, false, device_->caps().software, window_size);
         }
     }
+    follow_renderer();
     const Clock::time_point begin = Clock::now();
     if (furrows_.is_open()) {
         stage_->world.run(update_furrow_skins);  // also while paused
@@ -107,6 +108,32 @@ void Player::draw_frame(float dt, const Input& input) {
     draw_hud(view_, window_size, dt);
 }
 
+void Player::request_next_renderer() {
+    const std::vector<const RenderProfile*> all = profiles_->available();
+    const auto at = std::ranges::find(all, profiles_->loaded());
+    const bool last = at == all.end() || at + 1 == all.end();
+    const RenderProfile& next = last ? *all.front() : **(at + 1);
+    profiles_->request(next.name);
+    hud_->toast(fmt::format("{}: {}", next.name, next.doc));
+}
+
+void Player::follow_renderer() {
+    const Result<bool> changed = profiles_->begin_frame();
+    if (!changed) {
+        log_error("{}", changed.error().message);
+        hud_->toast(changed.error().message, ToastKind::Bad);
+        if (profiles_->loaded() == nullptr && !profiles_->load()) {
+            window_->request_close();  // nothing can be drawn
+            return;
+        }
+    }
+    if (!changed || *changed) {
+        renderer_ = &profiles_->renderer();
+        off_renderer_.reset();
+        warm_up_level();
+    }
+}
+
 /// Shows edits since the last frame at once, also while paused.
 void Player::show_edits() {
     const std::uint64_t revision = inspector_.undo_stack().revision();
@@ -123,7 +150,7 @@ void Player::show_edits() {
             played->world.run(update_transforms);
         }
     }
-    for (Renderer* const renderer : {renderer_.get(), off_renderer_.get()}) {
+    for (Renderer* const renderer : {renderer_, off_renderer_.get()}) {
         if (renderer != nullptr) {
             cut(*renderer);
         }
@@ -152,7 +179,8 @@ void Player::draw_stages(const IVec2& window_size) {
 /// Draws the first `columns` of the window from the level without the technique.
 void Player::draw_off_stage(const IVec2& window_size, int columns) {
     if (off_renderer_ == nullptr) {
-        Result<RendererPtr> renderer = create_renderer(*device_);
+        Result<RendererPtr> renderer =
+            create_renderer(*device_, {.image = profiles_->loaded()->image()});
         if (!renderer) {
             log_error("{}", renderer.error().message);
             off_stage_ = nullptr;

@@ -151,6 +151,8 @@ std::span<const PlayerKey> Player::keys() {
 
         {"Program", "F5", "reload the shaders (changed files reload by themselves)", GLFW_KEY_F5, 0,
          [](Player& p) { p.reload_shaders(true); }},
+        {"Program", "Shift F5", "next renderer: full, plain", GLFW_KEY_F5, kShift,
+         [](Player& p) { p.request_next_renderer(); }},
         {"Program", "F9", "screenshot as PNG", GLFW_KEY_F9, 0,
          [](Player& p) {
              p.screenshot_wanted_ = true;
