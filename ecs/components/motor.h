@@ -8,9 +8,11 @@
 
 namespace limn {
 
-/// Moves its entity, which must not have a parent, as its MoveIntent says: an upright capsule that
-/// walks on everything Walkable, climbs steps, slides along walls, falls, wades and swims. Its
-/// origin is between its feet, and it faces +z.
+/// Moves its entity as its MoveIntent says: an upright capsule that walks on everything Walkable,
+/// climbs steps, slides along walls, falls, wades and swims. Its origin is between its feet, and it
+/// faces +z. Ground that moves and turns carries it along. A Parent only gives the place where it
+/// begins: the motor takes the entity off it, and what it stands on carries it. If it is attached
+/// to something later, it does not move by itself until it is detached.
 struct CharacterMotor {
     float radius = 0.28f;
     float height = 1.75f;
@@ -45,6 +47,22 @@ enum class MotorMode : std::uint32_t {
     Swim,
 };
 
+/// How the ground below a character has moved it in the last step, before it moved by itself: what
+/// was at `from` is at `to`, and what is around it has turned with it.
+struct GroundRide {
+    Vec3 from = Vec3(0);
+    Vec3 to = Vec3(0);
+    Quat turn = Quat(1, 0, 0, 0);
+    float yaw = 0.0f;
+};
+
+LIMN_FIELDS(GroundRide) {
+    LIMN_FIELD(from, "where the character was, in the world", "m");
+    LIMN_FIELD(to, "where the ground has carried it", "m");
+    LIMN_FIELD(turn, "of the ground");
+    LIMN_FIELD(yaw, "turn of the character, which stays upright", "rad");
+}
+
 /// State of a CharacterMotor.
 struct MotorState {
     Vec3 velocity = Vec3(0);
@@ -52,7 +70,9 @@ struct MotorState {
     Vec3 wall = Vec3(0);
     Entity ground{};
     Vec3 point = Vec3(0);
-    Vec3 ahead = Vec3(0, 0, 1);
+    Quat ground_rotation = Quat(1, 0, 0, 0);
+    GroundRide ride{};
+    Vec3 drift = Vec3(0);
     float depth = -1.0f;
     float air_time = 0.0f;
     float gather = 0.0f;
@@ -66,7 +86,10 @@ LIMN_FIELDS(MotorState) {
     LIMN_FIELD(wall, "normal of the wall toward which it wants to go; 0 0 0: none");
     LIMN_FIELD(ground, "entity that it stands on");
     LIMN_FIELD(point, "where, in the space of that entity", "m");
-    LIMN_FIELD(ahead, "+z of the character in that space");
+    LIMN_FIELD(ground_rotation, "of that entity, in the world");
+    LIMN_FIELD(ride, "how that entity has moved it in the last step");
+    LIMN_FIELD(
+        drift, "velocity of the ground that it stands on, or has left in a jump or a fall", "m/s");
     LIMN_FIELD(depth, "of the water above the soles; < 0: none", "m");
     LIMN_FIELD(air_time, "since it last stood", "s");
     LIMN_FIELD(gather, "since it crouches for a jump", "s");

@@ -121,7 +121,8 @@ std::vector<PlacedGround> place_grounds(const GroundQueries& queries) {
         });
     queries.grounds.each([&](Entity entity, const Walkable&, const MeshInstance* instance,
                              const HeightField* field) {
-        PlacedGround ground = {entity, placements.world(entity), {}, nullptr, field};
+        PlacedGround ground = {
+            entity, placements.root(entity), placements.world(entity), {}, nullptr, field};
         const bool has_mesh =
             field == nullptr && instance != nullptr && instance->mesh.index < assets.meshes.size();
         if (has_mesh) {

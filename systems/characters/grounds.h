@@ -49,6 +49,7 @@ struct GroundHit {
 /// A Walkable entity: a mesh, a height field, or the plane y = 0 of its space.
 struct PlacedGround {
     Entity entity{};
+    Entity base{};  ///< its topmost parent, or itself
     Affine world{};
     Affine local{};  ///< local_from_world
     const MeshBvh* mesh = nullptr;

@@ -76,7 +76,7 @@ void update_heroes(
         if (carried != nullptr && carried->carrier == entity) {
             carried->carrier = {};
             carried->velocity =
-                state.velocity
+                state.velocity + state.drift
                 + hero.throw_speed * glm::normalize(transform.rotation * Vec3(0, kThrowRise, 1));
             hero.carried = {};
             return;

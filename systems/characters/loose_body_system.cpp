@@ -1,6 +1,7 @@
 #include "systems/characters/loose_body_system.h"
 
 #include "ecs/base/rotation.h"
+#include "systems/characters/ground_ride.h"
 
 #include <glm/geometric.hpp>
 
@@ -181,11 +182,15 @@ void update_loose_bodies(
             const float ahead = motor->radius + body.radius + 0.05f;
             const Vec3 place =
                 transform_point(carrier, Vec3(0, kHoldHeight * motor->height, ahead));
-            state.velocity = motors.find<const MotorState>(state.carrier)->velocity;
+            const auto* const holder = motors.find<const MotorState>(state.carrier);
+            state.velocity = holder->velocity + holder->drift;
             state.held += time->step;
             const float lift = std::clamp((state.held - kGraspTime) / kLiftTime, 0.0f, 1.0f);
             const float share = 1 - std::exp(-kLiftRate * square(lift) * time->step);
-            const Vec3 carried = transform.position + time->step * lift * state.velocity;
+            const bool stands = holder->mode == MotorMode::Stand;
+            const Vec3 moves = stands ? holder->velocity : state.velocity;
+            const Vec3 carried =
+                carry_point(holder->ride, transform.position) + time->step * lift * moves;
             transform.position = glm::mix(carried, place, share);
             return;
         }

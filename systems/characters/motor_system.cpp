@@ -1,6 +1,8 @@
 #include "systems/characters/motor_system.h"
 
 #include "ecs/base/rotation.h"
+#include "ecs/components/placement.h"
+#include "systems/animation/ik/placements.h"
 
 #include <glm/geometric.hpp>
 
@@ -45,6 +47,7 @@ class Surroundings {
           radius_(std::clamp(motor.radius, 0.01f, 0.5f * (motor.height - step_))),
           walkable_(std::cos(motor.slope)) {}
 
+    [[nodiscard]] std::span<const PlacedGround> grounds() const { return grounds_; }
     [[nodiscard]] float step() const { return step_; }
     [[nodiscard]] float radius() const { return radius_; }
     [[nodiscard]] bool is_walkable(const Vec3& normal) const { return normal.y >= walkable_; }
@@ -97,31 +100,58 @@ class Surroundings {
     float walkable_;
 };
 
+Quat rotation_of(const PlacedGround& ground) {
+    return decompose_affine(ground.world).rotation;
+}
+
 /// Carries the character with the ground on which it stands.
-void ride(std::span<const PlacedGround> grounds, MotorBody& body) {
-    const PlacedGround* const ground =
-        body.state.mode == MotorMode::Stand ? find_placed(grounds, body.state.ground) : nullptr;
+void ride(std::span<const PlacedGround> grounds, float dt, MotorBody& body) {
+    MotorState& state = body.state;
+    Transform& at = body.transform;
+    state.ride = {.from = at.position, .to = at.position};
+    if (state.mode != MotorMode::Stand) {
+        return;
+    }
+    state.drift = Vec3(0);
+    const PlacedGround* const ground = find_placed(grounds, state.ground);
     if (ground == nullptr) {
         return;
     }
-    const Vec3 carried = transform_point(ground->world, body.state.point);
-    const Vec3 ahead = level_part(transform_vector(ground->world, body.state.ahead));
-    if (is_finite(carried) && is_finite(ahead)) {
-        body.transform.position = carried;
-        const Vec3 now = level_part(body.transform.rotation * Vec3(0, 0, 1));
-        const float turn = std::atan2(ahead.x, ahead.z) - std::atan2(now.x, now.z);
-        if (std::abs(std::remainder(turn, 2 * kPi)) > 1e-5f && ahead != Vec3(0)) {
-            body.transform.rotation =
-                normalize_or_identity(rotation_about({0, 1, 0}, turn) * body.transform.rotation);
-        }
+    const Vec3 carried = transform_point(ground->world, state.point);
+    const Quat rotation = rotation_of(*ground);
+    if (!is_finite(carried)) {
+        return;
     }
+    at.position = state.ride.to = carried;
+    state.drift = dt > 0 ? (carried - state.ride.from) / dt : Vec3(0);
+    if (rotation != state.ground_rotation) {
+        state.ride.turn = normalize_or_identity(rotation * glm::conjugate(state.ground_rotation));
+        const Vec3 now = level_part(at.rotation * Vec3(0, 0, 1));
+        const Vec3 ahead = level_part(state.ride.turn * now);
+        state.ride.yaw =
+            std::remainder(std::atan2(ahead.x, ahead.z) - std::atan2(now.x, now.z), 2 * kPi);
+        at.rotation =
+            normalize_or_identity(rotation_about({0, 1, 0}, state.ride.yaw) * at.rotation);
+    }
+}
+
+/// It keeps the velocity of the ground that it leaves.
+void leave_ground(MotorState& state) {
+    state.velocity.y += state.drift.y;
+    state.drift.y = 0;
+    state.mode = MotorMode::Fall;
+}
+
+/// Its velocity is that in the world from now on.
+void forget_drift(MotorState& state) {
+    state.velocity += level_part(state.drift);
+    state.drift = Vec3(0);
 }
 
 void remember_ground(const Landing& landing, MotorBody& body) {
     body.state.ground = landing.ground->entity;
     body.state.point = transform_point(landing.ground->local, body.transform.position);
-    body.state.ahead =
-        transform_vector(landing.ground->local, body.transform.rotation * Vec3(0, 0, 1));
+    body.state.ground_rotation = rotation_of(*landing.ground);
     body.state.normal = landing.normal;
 }
 
@@ -156,6 +186,7 @@ Wetness find_wetness(std::span<const WaterSurface> waters, const Vec3& feet) {
 void choose_mode(const CharacterMotor& motor, MotorState& state) {
     const float swim = state.mode == MotorMode::Swim ? kStandFrom : kSwimFrom;
     if (state.depth > swim * motor.height) {
+        forget_drift(state);
         state.mode = MotorMode::Swim;
     } else if (state.mode == MotorMode::Swim) {
         state.mode = MotorMode::Fall;
@@ -192,7 +223,7 @@ void accelerate(
         state.gather = 0;
         // Speeds change before positions, which half a step of gravity makes up for.
         state.velocity.y = std::sqrt(2 * kMotorGravity * motor.jump) - 0.5f * kMotorGravity * dt;
-        state.mode = MotorMode::Fall;
+        leave_ground(state);
         state.air_time = kCoyote;
         body.jumped = true;
     } else if (stands) {
@@ -203,8 +234,9 @@ void accelerate(
     state.velocity = shortened_to(state.velocity, kMotorTopSpeed);
 }
 
-/// Pushes it out of walls and ceilings, and takes away the speed into them.
-void leave_solids(const Surroundings& around, MotorBody& body) {
+/// Pushes it out of walls and ceilings, and takes away the speed into them. `drift`: in addition to
+/// its own velocity.
+void leave_solids(const Surroundings& around, const Vec3& drift, MotorBody& body) {
     for (int i = 0; i < kMaxContacts; ++i) {
         const std::optional<GroundContact> touch = around.touch(body.transform.position);
         if (!touch || touch->contact.depth < kContactSkin) {
@@ -219,7 +251,8 @@ void leave_solids(const Surroundings& around, MotorBody& body) {
             depth /= side;
         }
         body.transform.position += std::min(depth, around.radius()) * normal;
-        body.state.velocity -= std::min(glm::dot(body.state.velocity, normal), 0.0f) * normal;
+        const Vec3 motion = body.state.velocity + drift;
+        body.state.velocity -= std::min(glm::dot(motion, normal), 0.0f) * normal;
         if (side > 0.7f) {
             body.state.wall = level_part(normal) / glm::length(level_part(normal));
         }
@@ -256,6 +289,12 @@ void leave_inside(
     }
 }
 
+/// What a ground belongs to: one that moves as a whole.
+Entity base_of(std::span<const PlacedGround> grounds, Entity entity) {
+    const PlacedGround* const ground = find_placed(grounds, entity);
+    return ground != nullptr ? ground->base : Entity{};
+}
+
 /// Puts it on the ground below, if it is to stand on it. `dt`: of this part of the step.
 void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
     MotorState& state = body.state;
@@ -263,8 +302,10 @@ void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
     const bool stood = state.mode == MotorMode::Stand;
     const Landing landing = around.land(feet, stood ? kSnapShare * around.step() + 0.02f : 0.0f);
     const bool rises = state.velocity.y > 1e-3f && !stood;
+    if (stood && (landing.ground == nullptr || !around.is_walkable(landing.normal))) {
+        leave_ground(state);
+    }
     if (landing.ground == nullptr || rises) {
-        state.mode = stood ? MotorMode::Fall : state.mode;
         return;
     }
     if (!around.is_walkable(landing.normal)) {  // too steep: slides
@@ -296,6 +337,9 @@ void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
                             * std::sqrt(std::max(1 - square(landing.normal.y), 0.0f))
                             / std::max(landing.normal.y, 0.1f);
     feet.y += std::abs(gap) <= slope_gap * 1.5f ? gap : ease * gap;
+    if (!stood && landing.ground->base != base_of(around.grounds(), state.ground)) {
+        forget_drift(state);
+    }
     state.velocity.y = 0;
     state.mode = MotorMode::Stand;
     state.air_time = 0;
@@ -321,12 +365,14 @@ MotorBody step_motor(
     MotorBody next = body;
     next.jumped = false;
     const Surroundings around(motor, grounds);
-    ride(grounds, next);
+    ride(grounds, dt, next);
     leave_inside(motor, around, grounds, next);
     const Wetness water = find_wetness(waters, next.transform.position);
     next.state.depth = water.depth;
     next.state.air_time += dt;
     choose_mode(motor, next.state);
+    // In the step in which it leaves the ground, that has carried it already.
+    const Vec3 drift = next.state.mode == MotorMode::Fall ? level_part(next.state.drift) : Vec3(0);
     const bool is_driven = drive && is_finite(drive->velocity) && std::isfinite(drive->turn)
                            && next.state.mode == MotorMode::Stand;
     if (is_driven) {
@@ -339,13 +385,13 @@ MotorBody step_motor(
     if (is_driven && next.state.mode == MotorMode::Stand) {
         next.state.velocity = shortened_to(level_part(drive->velocity), kMotorTopSpeed);
     }
-    const float way = glm::length(next.state.velocity) * dt;
+    const float way = glm::length(next.state.velocity + drift) * dt;
     const int parts =
         std::clamp(static_cast<int>(std::ceil(2 * way / around.radius())), 1, kMaxParts);
     const float part = dt / static_cast<float>(parts);
     for (int i = 0; i < parts; ++i) {
-        next.transform.position += part * next.state.velocity;
-        leave_solids(around, next);
+        next.transform.position += part * (next.state.velocity + drift);
+        leave_solids(around, drift, next);
         meet_ground(around, part, next);
     }
     feel_wall(around, intent, next);
@@ -355,7 +401,16 @@ MotorBody step_motor(
 
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
-    Query<const CharacterMotor, Without<MoveIntent>> aimless, Commands commands) {
+    Query<const CharacterMotor, Without<MoveIntent>> aimless,
+    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>> children,
+    Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
+    Query<const Parent> parents, Commands commands) {
+    const Placements placements(transforms, parents);
+    children.each([&](Entity entity, const CharacterMotor&, const Transform&) {
+        commands.set(entity, decompose_affine(placements.world(entity)));
+        commands.remove<Parent>(entity);
+    });
+    left.each([&](Entity entity, const MotorState&) { commands.remove<MotorState>(entity); });
     bare.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MotorState{}); });
     aimless.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MoveIntent{}); });
 }

@@ -38,9 +38,14 @@ struct MotorDrive {
     std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt,
     const std::optional<MotorDrive>& drive = {});
 
+/// `children`: are taken off their parents, where these have them now. One that becomes a child
+/// later does not move by itself until it is a root again.
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
-    Query<const CharacterMotor, Without<MoveIntent>> aimless, Commands commands);
+    Query<const CharacterMotor, Without<MoveIntent>> aimless,
+    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>> children,
+    Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
+    Query<const Parent> parents, Commands commands);
 
 /// After everything that moves grounds.
 void update_motors(

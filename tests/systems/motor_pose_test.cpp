@@ -7,7 +7,7 @@
 #include "ecs/snapshot.h"
 #include "systems/animation/walk/apply_motor_pose.h"
 #include "tests/near.h"
-#include "tests/systems/motor_fixture.h"
+#include "tests/systems/hero_fixture.h"
 #include "tests/systems/walk_fixture.h"
 #include "tests/technique.h"
 
@@ -29,60 +29,6 @@ using namespace limn::test;
 namespace {
 
 constexpr float kFrame = 1.0f / 60;
-constexpr CharacterMotor kMotor = {.take_off = 0.1f};
-
-/// A person on a plane, moved by a motor.
-struct PoseStage : MotorStage {
-    explicit PoseStage(std::vector<MeshData> meshes = {}, const Transform& at = {})
-        : MotorStage(std::move(meshes), at, kMotor) {
-        world.resource<Assets>().skeletons.push_back(make_stick_person());
-        Walk walk;
-        walk.moves_root = false;
-        world.add(person, Skeleton{{0}});
-        world.add(person, walk);
-        world.add(person, MotorPose{});
-        step(3);
-    }
-    [[nodiscard]] const MotorPoseState& motion() { return world.get<const MotorPoseState>(person); }
-    [[nodiscard]] const WalkState& walk() { return world.get<const WalkState>(person); }
-    [[nodiscard]] const WalkBody& body() { return world.get<const WalkBody>(person); }
-    [[nodiscard]] Vec3 joint(std::uint16_t joint) {
-        return transform_point(
-            world.get<const WorldTransform>(person).world,
-            transform_point(world.get<const Pose>(person).joints[joint], Vec3(0)));
-    }
-    [[nodiscard]] float hips_height() { return joint(body().hips).y - feet().y; }
-    /// Heel and ball of a foot.
-    [[nodiscard]] std::array<Vec3, 2> sole(std::uint32_t side) {
-        const WalkLeg& leg = body().legs[side];
-        const Affine& ankle = world.get<const Pose>(person).joints[leg.foot];
-        const Affine& root = world.get<const WorldTransform>(person).world;
-        return {
-            transform_point(root, transform_point(ankle, leg.heel - leg.ankle)),
-            transform_point(root, transform_point(ankle, leg.ball - leg.ankle))};
-    }
-    /// Height of the lowest point of both soles above the ground y = 0.
-    [[nodiscard]] float clearance() {
-        float least = 1e6f;
-        for (std::uint32_t i = 0; i < 2; ++i) {
-            const std::array<Vec3, 2> points = sole(i);
-            least = std::min({least, points[0].y, points[1].y - body().legs[i].ball.y});
-        }
-        return least;
-    }
-    void jump() { world.get<MoveIntent>(person).jump = true; }
-    /// Until it stands after it has not stood; false: it never did.
-    bool run_to_landing() {
-        for (int i = 0; i < 600; ++i) {
-            const bool was_off = motion().off_ground != 0;
-            step();
-            if (was_off && motion().off_ground == 0) {
-                return true;
-            }
-        }
-        return false;
-    }
-};
 
 /// Deepest that the hips sink after a fall from this height, and how low they are 1.5 s later.
 std::array<float, 2> sink_after_fall(float height) {
@@ -263,9 +209,10 @@ TEST_CASE(
                 drawn_up = stage.feet().y > apex ? stage.clearance() - stage.feet().y : drawn_up;
                 apex = std::max(apex, stage.feet().y);
                 lowest = std::min(lowest, stage.clearance());
-                before_landing = stage.state().velocity.y < 0 && stage.feet().y > 0.3f * kMotor.jump
-                                     ? std::min(before_landing, stage.clearance())
-                                     : before_landing;
+                before_landing =
+                    stage.state().velocity.y < 0 && stage.feet().y > 0.3f * kHeroMotor.jump
+                        ? std::min(before_landing, stage.clearance())
+                        : before_landing;
             }
         }
         CHECK(lowest_hips < 0.92f);
@@ -273,8 +220,8 @@ TEST_CASE(
         // Half a step of gravity is taken off at once.
         CHECK(
             double(take_off) + 0.5 * 9.81 / 60
-            == near(std::sqrt(2 * 9.81 * double(kMotor.jump))).epsilon(1e-3));
-        CHECK(double(apex) == near(double(kMotor.jump)).epsilon(0.01));
+            == near(std::sqrt(2 * 9.81 * double(kHeroMotor.jump))).epsilon(1e-3));
+        CHECK(double(apex) == near(double(kHeroMotor.jump)).epsilon(0.01));
         CHECK(drawn_up > 0.1f);
         CHECK(lowest > -1e-3f);
         CHECK(before_landing > 0.2f);
@@ -467,24 +414,6 @@ TEST_CASE("motor pose: long steps, none, and numbers that are not finite") {
 }
 
 namespace {
-
-/// The same, walking by motion matching.
-struct MatchedStage : PoseStage {
-    explicit MatchedStage(std::vector<MeshData> meshes = {}, const MotionMatch& match = {})
-        : PoseStage(std::move(meshes)) {
-        world.add(person, match);
-        step(60);
-    }
-    [[nodiscard]] const MotionMatchState& match() {
-        return world.get<const MotionMatchState>(person);
-    }
-    [[nodiscard]] bool is_away() { return match().away != 0; }
-    /// Whether a foot is on the ground, by what poses it.
-    [[nodiscard]] bool is_planted(std::uint32_t side) {
-        return is_away() ? motion().off_ground == 0 && flight_progress(walk(), side) >= 1
-                         : match().feet[side].planted == 1;
-    }
-};
 
 /// Joints whose motion is looked at.
 std::vector<std::uint16_t> shown_joints(const WalkBody& body) {

@@ -2,6 +2,7 @@
 
 #include "ecs/components/humanoid.h"
 #include "systems/animation/ik/placements.h"
+#include "systems/animation/ik/plant_feet.h"
 
 #include <glm/geometric.hpp>
 
@@ -14,10 +15,26 @@ namespace {
 
 constexpr std::uint16_t kNoFoot = 0xffff;
 
+/// What apply_foot_plant has made of a foot.
+struct PlantedFoot {
+    Vec3 ankle = {0, 0, 0};
+    float low = 0.0f;  ///< highest ankle that turns with the slope [m]
+};
+
+/// The point of the ground about which it has turned.
+Vec3 find_turned_about(
+    const FootPlant& plant, const PlantedFoot& foot, float lift, const Vec3& normal) {
+    const Vec3 up = foot_slope(plant, normal) * Vec3(0, 1, 0);
+    return foot.ankle - std::min((foot.ankle.y - lift) / up.y, foot.low) * up;
+}
+
 void update_foot(
     std::span<const PlacedGround> grounds, const Affine& world, const Affine& local,
-    const FootPlant& plant, const Vec3& foot, bool stands, float step, std::size_t i,
+    const FootPlant& plant, const PlantedFoot& planted, bool stands, float step, std::size_t i,
     FootContacts& contacts) {
+    const Vec3 foot = find_turned_about(
+        plant, planted, std::clamp(plant.weight, 0.0f, 1.0f) * contacts.lifts[i],
+        contacts.normals[i]);
     const auto on_floor = [&](float height) {
         return transform_point(world, Vec3(foot.x, height, foot.z));
     };
@@ -80,7 +97,9 @@ void update_foot_contacts(
         const bool stands = motor == nullptr || motor->mode == MotorMode::Stand;
         for (std::size_t i = 0; i < 2; ++i) {
             if (feet[i] < pose.joints.size()) {
-                const Vec3 foot = transform_point(pose.joints[feet[i]], Vec3(0));
+                const PlantedFoot foot = {
+                    transform_point(pose.joints[feet[i]], Vec3(0)),
+                    sloping_height(assets.skeletons[index], feet[i])};
                 update_foot(placed, world, local, plant, foot, stands, step, i, contacts);
             }
         }

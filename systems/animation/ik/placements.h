@@ -17,6 +17,16 @@ class Placements {
 
     [[nodiscard]] bool has(Entity entity) const { return transforms_.contains(entity); }
 
+    /// The topmost parent, or the entity itself.
+    [[nodiscard]] Entity root(Entity entity) const {
+        const Parent* parent = parents_.find<const Parent>(entity);
+        while (parent != nullptr && has(parent->entity)) {
+            entity = parent->entity;
+            parent = parents_.find<const Parent>(entity);
+        }
+        return entity;
+    }
+
     [[nodiscard]] Affine world(Entity entity) const {
         Affine matrix;
         while (const Transform* const transform = transforms_.find<const Transform>(entity)) {

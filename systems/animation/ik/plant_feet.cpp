@@ -12,8 +12,20 @@ namespace limn {
 namespace {
 
 constexpr float kMaxFootSlope = 0.6f;  // that feet turn to [rad]
+constexpr float kSlopingHeight = 2.5f;  // of ankles at rest
 
 }  // namespace
+
+Quat foot_slope(const FootPlant& plant, const Vec3& normal) {
+    const AxisAngle turn =
+        axis_angle(rotation_between(Vec3(0, 1, 0), normalize_or(normal, Vec3(0, 1, 0))));
+    const float weight = std::clamp(plant.weight, 0.0f, 1.0f);
+    return rotation_about(turn.axis, std::min(turn.angle, kMaxFootSlope) * plant.align * weight);
+}
+
+float sloping_height(const SkeletonData& skeleton, std::uint16_t foot) {
+    return kSlopingHeight * std::max(find_place(skeleton, skeleton.rest, foot).position.y, 0.0f);
+}
 
 void apply_foot_plant(
     const SkeletonData& skeleton, const FootPlant& plant, const FootContacts& contacts,
@@ -30,15 +42,15 @@ void apply_foot_plant(
     }
     pose.translations[0].y += weight * std::min(contacts.lifts[0], contacts.lifts[1]);
     for (std::size_t i = 0; i < 2; ++i) {
-        const Vec3 target = places[i].position + Vec3(0, weight * contacts.lifts[i], 0);
+        // It turns about the point of the ground below the ankle, which stays where it is.
+        const Quat slope = foot_slope(plant, contacts.normals[i]);
+        const Vec3& ankle = places[i].position;
+        const float low = std::min(ankle.y, sloping_height(skeleton, feet[i]));
+        const Vec3 target = Vec3(ankle.x, weight * contacts.lifts[i], ankle.z)
+                            + Vec3(0, ankle.y - low, 0) + slope * Vec3(0, low, 0);
         const LimbReach reach = {.target = target, .options = {.softness = plant.softness}};
         reach_with_limb(skeleton, find_limb(skeleton, feet[i], 2), reach, pose);
-        const Vec3 normal = normalize_or(contacts.normals[i], Vec3(0, 1, 0));
-        const Quat slope = rotation_between(Vec3(0, 1, 0), normal);
-        const AxisAngle turn = axis_angle(slope);
-        const float angle = std::min(turn.angle, kMaxFootSlope) * plant.align * weight;
-        set_joint_rotation(
-            skeleton, feet[i], rotation_about(turn.axis, angle) * places[i].rotation, 1, pose);
+        set_joint_rotation(skeleton, feet[i], slope * places[i].rotation, 1, pose);
     }
 }
 

@@ -354,7 +354,7 @@ void move_root(const GroundMove& move, float dt, Transform& transform, MotionMat
     state.turn = move.yaw / dt;
 }
 
-/// The motor has moved the root; feet go up and down with it.
+/// The motor has moved the root; feet go up and down with it, as it climbs.
 void follow_motor(const MotorState& motor, const Transform& transform, MotionMatchState& state) {
     const float climbed = transform.position.y - state.root.y;
     for (MatchFoot& foot : state.feet) {

@@ -4,6 +4,7 @@
 #include "systems/animation/matching/match_handover.h"
 #include "systems/animation/matching/match_step.h"
 #include "systems/animation/matching/match_takes.h"
+#include "systems/characters/ground_ride.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,43 +69,50 @@ void prepare_match_databases(
 void update_motion_matching(
     Query<
         const Skeleton, const MotionMatch, Optional<const MoveIntent>, Optional<const MotorState>,
-        Optional<const MotorPoseState>, Optional<const MatchHandover>, Optional<WalkState>,
-        MotionMatchState, MatchPose, Transform>
+        Optional<const FootContacts>, Optional<const MotorPoseState>, Optional<const MatchHandover>,
+        Optional<WalkState>, MotionMatchState, MatchPose, Transform>
         characters,
     Res<const Assets> assets, Res<const MatchDatabases> databases,
     OptionalRes<const FrameTime> time) {
     const float step = time ? time->step : 0.0f;
-    characters.par_each(
-        [&, step](
-            const Skeleton& skeleton, const MotionMatch& match, const MoveIntent* wanted,
-            const MotorState* motor, const MotorPoseState* motor_pose, const MatchHandover* shown,
-            WalkState* walk, MotionMatchState& state, MatchPose& pose, Transform& transform) {
-            const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
-            if (database == nullptr || database->rows.count == 0) {
-                state.away = 1;  // the walk and the motor pose it
+    characters.par_each([&, step](
+                            const Skeleton& skeleton, const MotionMatch& match,
+                            const MoveIntent* wanted, const MotorState* motor,
+                            const FootContacts* contacts, const MotorPoseState* motor_pose,
+                            const MatchHandover* shown, WalkState* walk, MotionMatchState& state,
+                            MatchPose& pose, Transform& transform) {
+        if (motor != nullptr) {
+            carry_match(motor->ride, contacts, state);
+        }
+        if (motor != nullptr && walk != nullptr) {
+            carry_walk(motor->ride, contacts, *walk);
+        }
+        const MatchDatabase* const database = databases->find(skeleton.skeleton, match);
+        if (database == nullptr || database->rows.count == 0) {
+            state.away = 1;  // the walk and the motor pose it
+            return;
+        }
+        const MatchContext context = {
+            *assets, assets->skeletons[skeleton.skeleton.index], *database, match, motor};
+        const MoveIntent intent = wanted != nullptr ? *wanted : MoveIntent{};
+        if (motor != nullptr && motor_pose != nullptr && shown != nullptr && walk != nullptr) {
+            const bool away =
+                is_more_than_walking(*motor, *motor_pose, database->body, state.away != 0);
+            if (away && state.away == 0) {
+                leave_motion_match(context, transform, step, state, *walk);
+            } else if (!away && state.away != 0) {
+                enter_motion_match(context, intent, *shown, step, transform, state);
+            }
+            state.away = away ? 1 : 0;
+            if (away) {
                 return;
             }
-            const MatchContext context = {
-                *assets, assets->skeletons[skeleton.skeleton.index], *database, match, motor};
-            const MoveIntent intent = wanted != nullptr ? *wanted : MoveIntent{};
-            if (motor != nullptr && motor_pose != nullptr && shown != nullptr && walk != nullptr) {
-                const bool away =
-                    is_more_than_walking(*motor, *motor_pose, database->body, state.away != 0);
-                if (away && state.away == 0) {
-                    leave_motion_match(context, transform, step, state, *walk);
-                } else if (!away && state.away != 0) {
-                    enter_motion_match(context, intent, *shown, step, transform, state);
-                }
-                state.away = away ? 1 : 0;
-                if (away) {
-                    return;
-                }
-            }
-            step_motion_match(context, intent, step, state, transform);
-            find_match_pose(context, state, transform, pose.pose);
-            pose.turning = database->turning;
-            pose.moving = database->moving;
-        });
+        }
+        step_motion_match(context, intent, step, state, transform);
+        find_match_pose(context, state, transform, pose.pose);
+        pose.turning = database->turning;
+        pose.moving = database->moving;
+    });
 }
 
 }  // namespace limn

@@ -2,6 +2,7 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/animation.h"
+#include "ecs/components/foot_plant.h"
 #include "ecs/components/motion_match.h"
 #include "ecs/components/motor.h"
 #include "ecs/components/motor_pose.h"
@@ -39,8 +40,8 @@ void prepare_match_databases(
 void update_motion_matching(
     Query<
         const Skeleton, const MotionMatch, Optional<const MoveIntent>, Optional<const MotorState>,
-        Optional<const MotorPoseState>, Optional<const MatchHandover>, Optional<WalkState>,
-        MotionMatchState, MatchPose, Transform>
+        Optional<const FootContacts>, Optional<const MotorPoseState>, Optional<const MatchHandover>,
+        Optional<WalkState>, MotionMatchState, MatchPose, Transform>
         characters,
     Res<const Assets> assets, Res<const MatchDatabases> databases,
     OptionalRes<const FrameTime> time);

@@ -7,6 +7,7 @@
 #include "systems/animation/walk/walk_plan.h"
 #include "systems/animation/walk/walk_pose.h"
 #include "systems/animation/walk/walk_step.h"
+#include "systems/characters/ground_ride.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -413,6 +414,7 @@ void step_motor_pose(
     }
     if (!stands) {
         if (state.off_ground == 0) {
+            state.root = carry_point(input.motor.ride, state.root);
             const bool left_flies = walk.flying == 0 && flight_progress(walk, 0) < 1;
             const Vec3 between = walk.feet[0].place - walk.feet[1].place;
             const bool left_ahead =

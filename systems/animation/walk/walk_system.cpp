@@ -1,6 +1,7 @@
 #include "systems/animation/walk/walk_system.h"
 
 #include "systems/animation/walk/walk_route.h"
+#include "systems/characters/ground_ride.h"
 
 #include <cstdint>
 #include <optional>
@@ -52,6 +53,9 @@ void update_walks(
                          const MotorState* motor, const MotorPoseState* motor_pose,
                          const MotionMatchState* match, WalkState& state, WalkBody& body,
                          Transform& transform) {
+        if (motor != nullptr && match == nullptr) {  // else motion matching has done it
+            carry_walk(motor->ride, contacts, state);
+        }
         if (match != nullptr && motor_pose != nullptr && match->away == 0 && state.placed != 0) {
             return;
         }
