@@ -1,10 +1,10 @@
 #include "systems/animation/pose_chain.h"
 
 #include "ecs/base/check.h"
+#include "systems/animation/crowd_frames.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/animation/pose_chain.cpp"
@@ -19,57 +19,6 @@
 namespace limn::crowd {
 
 static_assert(sizeof(Affine) == 12 * sizeof(float));
-
-/// Squared length of an unpacked quaternion.
-inline constexpr float kPackedLength2 = 2.0f * kPackedMax * kPackedMax;
-/// sqrt(1 / kPackedLength2).
-inline constexpr float kPackedUnit = 0.70710678f / kPackedMax;
-// 1 / sqrt(1 - e) by the cubic through four Chebyshev nodes of 0 .. 0.05, error 1.5e-8: e is what
-// is left of a squared length of 1 halfway between frames (kMinFrameCosine).
-inline constexpr float kInverseRoot[] = {
-    kPackedUnit * 0.9999999854f, kPackedUnit * 0.5000093520f, kPackedUnit * 0.3740719076f,
-    kPackedUnit * 0.3416321824f};
-
-/// Two neighboring frames.
-struct FramePair {
-    std::size_t first = 0;
-    std::size_t step = 0;  ///< to the second one: 1, or 0 if there is a single frame
-    float u = 0.0f;        ///< 0 .. 1
-};
-
-inline FramePair find_frames(const CrowdClip& clip, float time) {
-    if (clip.frames < 2) {
-        return {};
-    }
-    const float last = static_cast<float>(clip.frames - 1);
-    float at = time * clip.rate;
-    at = at > 0.0f ? std::min(at, last) : 0.0f;  // NaN: 0
-    const std::size_t first = std::min(static_cast<std::size_t>(at), clip.frames - 2);
-    return {first, 1, at - static_cast<float>(first)};
-}
-
-/// Of the joints that `rows` has.
-inline void copy_all_constants(const CrowdClip& clip, PoseRows& rows) {
-    const std::size_t stride = pose_stride(clip.joints);
-    const auto copy = [&](const std::vector<float>& constants, std::size_t first,
-                          std::size_t count) {
-        if (constants.empty()) {
-            return;
-        }
-        float* const to = rows.values.data() + first * rows.stride;
-        if (rows.stride == stride) {
-            std::memcpy(to, constants.data(), count * stride * sizeof(float));
-            return;
-        }
-        for (std::size_t row = 0; row < count; ++row) {
-            std::memcpy(
-                to + row * rows.stride, constants.data() + row * stride,
-                rows.stride * sizeof(float));
-        }
-    };
-    copy(clip.rotations.constants, 0, 4);
-    copy(clip.translations.constants, 4, 3);
-}
 
 /// How many joints of a run are among the first `joints`, at least one.
 inline std::size_t length_within(const TrackRun& run, std::size_t joints) {
@@ -547,39 +496,6 @@ namespace {
 
 constexpr std::size_t kMinLanes = 3;  ///< characters for which vectors of them are faster
 
-float mix(float a, float b, float u) {
-    return a + (b - a) * u;
-}
-
-Quat mix(const Quat& a, const Quat& b, float u) {
-    return {mix(a.w, b.w, u), mix(a.x, b.x, u), mix(a.y, b.y, u), mix(a.z, b.z, u)};
-}
-
-float dot(const Quat& a, const Quat& b) {
-    return (a.x * b.x + a.y * b.y) + (a.z * b.z + a.w * b.w);
-}
-
-Quat scale(const Quat& q, float factor) {
-    return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
-}
-
-float inverse_length(float length2) {
-    const float left = 1.0f - length2 * (1.0f / crowd::kPackedLength2);
-    float sum = crowd::kInverseRoot[3];
-    for (std::size_t i = 3; i-- > 0;) {
-        sum = sum * left + crowd::kInverseRoot[i];
-    }
-    return sum;
-}
-
-void put(PoseRows& rows, std::size_t joint, const Quat& q) {
-    float* const v = rows.values.data() + joint;
-    v[0] = q.x;
-    v[rows.stride] = q.y;
-    v[2 * rows.stride] = q.z;
-    v[3 * rows.stride] = q.w;
-}
-
 /// Matrices that the lanes of the last group write which no character has.
 struct CrowdScratch {
     std::vector<float> slots;
@@ -606,16 +522,6 @@ CrowdScratch& crowd_scratch(const CrowdRig& rig) {
     thread_local CrowdScratch scratch;
     scratch.reserve(rig);
     return scratch;
-}
-
-Affine multiply(const Affine& a, const Affine& b) {
-    Affine product;
-    for (int i = 0; i < 3; ++i) {
-        const Vec4& row = a.row[i];
-        product.row[i] = row.x * b.row[0] + row.y * b.row[1] + row.z * b.row[2];
-        product.row[i].w += row.w;
-    }
-    return product;
 }
 
 void sample_character(
@@ -667,63 +573,10 @@ CrowdRig make_crowd_rig(const SkeletonData& skeleton, std::size_t max_joints) {
     return rig;
 }
 
-void sample_crowd_clip_scalar(
-    const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints) {
-    const std::size_t joints = std::min(clip.joints, max_joints);
-    rows.resize(joints);
-    const crowd::FramePair at = crowd::find_frames(clip, time);
-    const CrowdTracks& turns = clip.rotations;
-    const auto packed = [&](std::size_t frame, std::size_t column) {
-        const std::uint16_t* const words =
-            turns.frames.data() + 3 * turns.animated * frame + column;
-        return unpack_rotation({words[0], words[turns.animated], words[2 * turns.animated]});
-    };
-    crowd::copy_all_constants(clip, rows);
-    for (const TrackRun& run : turns.runs) {
-        for (std::size_t i = 0; i < run.count && run.first + i < joints; ++i) {
-            const std::size_t column = run.track + i;
-            const Quat mixed =
-                mix(packed(at.first, column), packed(at.first + at.step, column), at.u);
-            put(rows, run.first + i, scale(mixed, inverse_length(dot(mixed, mixed))));
-        }
-    }
-    const CrowdTracks& moves = clip.translations;
-    const std::size_t width = moves.animated;
-    const std::uint16_t* const frame = moves.frames.data() + 3 * width * at.first;
-    for (const TrackRun& run : moves.runs) {
-        for (std::size_t i = 0; i < run.count && run.first + i < joints; ++i) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const std::size_t column = axis * width + run.track + i;
-                const float steps = mix(frame[column], frame[column + 3 * width * at.step], at.u);
-                rows.values[(4 + axis) * rows.stride + run.first + i] =
-                    steps * moves.ranges[column + 3 * width] + moves.ranges[column];
-            }
-        }
-    }
-}
-
 void sample_crowd_clip(const CrowdClip& clip, float time, PoseRows& rows, std::size_t max_joints) {
     rows.resize(std::min(clip.joints, max_joints));
     if (!HWY_DYNAMIC_DISPATCH(sample_rows)(clip, time, rows)) {
         sample_crowd_clip_scalar(clip, time, rows, max_joints);
-    }
-}
-
-void blend_poses_scalar(const PoseRows& a, const PoseRows& b, float weight, PoseRows& out) {
-    LIMN_CHECK(a.joints == b.joints);
-    out.resize(a.joints);
-    for (std::size_t j = 0; j < a.joints; ++j) {
-        const Quat p = a.rotation(j);
-        const Quat q = b.rotation(j);
-        const bool flips = std::signbit(dot(p, q));
-        const Quat sum = mix(p, flips ? scale(q, -1.0f) : q, weight);
-        const Vec3 from = a.translation(j);
-        const Vec3 to = b.translation(j);
-        put(out, j, scale(sum, 1.0f / std::sqrt(dot(sum, sum))));
-        for (int axis = 0; axis < 3; ++axis) {
-            out.values[(4 + static_cast<std::size_t>(axis)) * out.stride + j] =
-                mix(from[axis], to[axis], weight);
-        }
     }
 }
 
@@ -732,20 +585,6 @@ void blend_poses(const PoseRows& a, const PoseRows& b, float weight, PoseRows& o
     out.resize(a.joints);
     if (!HWY_DYNAMIC_DISPATCH(blend_rows)(a, b, weight, out)) {
         blend_poses_scalar(a, b, weight, out);
-    }
-}
-
-void compute_crowd_joints(
-    const CrowdRig& rig, const PoseRows& rows, std::span<Affine> joints,
-    std::span<const Affine> joint_from_mesh) {
-    LIMN_CHECK(rows.joints == rig.joints() && joints.size() == rig.joints());
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        const Affine local = affine_from(rows.translation(j), rows.rotation(j), rig.scales[j]);
-        const std::int32_t parent = rig.parents[j];
-        joints[j] = parent < 0 ? local : multiply(joints[static_cast<std::size_t>(parent)], local);
-    }
-    for (std::size_t j = 0; j < joint_from_mesh.size(); ++j) {
-        joints[j] = multiply(joints[j], joint_from_mesh[j]);
     }
 }
 
@@ -772,21 +611,6 @@ void compute_crowd_joints(
                     rig, *rows[begin + c], {joints[begin + c], rig.joints()}, joint_from_mesh);
             }
         }
-    }
-}
-
-void pose_crowd_scalar(
-    const CrowdRig& rig, std::span<const CrowdCharacter> characters,
-    std::span<const Affine> joint_from_mesh) {
-    PoseRows rows;
-    PoseRows next;
-    for (const CrowdCharacter& character : characters) {
-        sample_crowd_clip_scalar(*character.clip, character.time, rows, rig.joints());
-        if (character.next != nullptr) {
-            sample_crowd_clip_scalar(*character.next, character.next_time, next, rig.joints());
-            blend_poses_scalar(rows, next, character.weight, rows);
-        }
-        compute_crowd_joints(rig, rows, {character.joints, rig.joints()}, joint_from_mesh);
     }
 }
 

@@ -11,7 +11,7 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxFootSlope = 0.6f;  // that feet turn to [rad]
+constexpr float kMaxFootSlope = 0.6f;   // that feet turn to [rad]
 constexpr float kSlopingHeight = 2.5f;  // of ankles at rest
 
 }  // namespace
