@@ -1,3 +1,4 @@
+#include "content/load/faces/face_skin.h"
 #include "content/load/faces/marker_retarget.h"
 #include "content/make/head/head.h"
 #include "content/make/head/head_expressions.h"
@@ -117,6 +118,26 @@ TEST_CASE(
         }
         CHECK(left < 0.15 * all);
     }
+    // Brows alone follow as far as a jaw does, though they move much less.
+    for (const char* const unit : {"AU1_L", "AU1_R", "AU4_L"}) {
+        const std::size_t shape = expression_index(unit);
+        std::vector<Vec3> offsets = found.moves[shape];
+        std::vector<float> weights(found.shapes.size(), 0.0f);
+        fit_shape_weights(found, offsets, weights);
+        double along = 0;
+        double all = 0;
+        for (std::size_t m = 0; m < offsets.size(); ++m) {
+            Vec3 sum(0);
+            for (std::size_t s = 0; s < weights.size(); ++s) {
+                sum += weights[s] * found.moves[s][m];
+            }
+            along += glm::dot(sum, offsets[m]);
+            all += glm::dot(offsets[m], offsets[m]);
+        }
+        CAPTURE(unit);
+        CHECK(along / all > 0.95);
+        CHECK(along / all < 1.02);
+    }
     std::vector<float> none(found.shapes.size(), 0.5f);
     fit_shape_weights(found, std::vector<Vec3>(found.points.size(), Vec3(0)), none);
     for (const float weight : none) {
@@ -133,6 +154,23 @@ TEST_CASE(
     REQUIRE(map->size() == 2);
     const FaceMarkers found = places(*map);
     CHECK(glm::distance(found.points[0], Vec3(0, -0.07f, 0.1f)) < 0.01f);
+    // Between vertices, points stay where they are, and move by shares of their motion.
+    const MeshData& skin = face().meshes[0];
+    const std::size_t shape = expression_index("AU26");
+    std::vector<Vec3> jaw(skin.positions.size(), Vec3(0));
+    for (std::size_t i = 0; i < skin.morphs[shape].vertices.size(); ++i) {
+        jaw[skin.morphs[shape].vertices[i]] = skin.morphs[shape].positions[i];
+    }
+    for (const std::size_t triangle : {600U, 2401U, 5000U}) {
+        SkinPoint between{{}, {0.5f, 0.3f, 0.2f}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            between.vertices[k] = skin.indices[3 * triangle + k];
+        }
+        const Vec3 at = position_on(between, skin.positions);
+        const FaceMarkers there = places({{"chin", "", at, 1}});
+        CHECK(glm::distance(there.points[0], at) < 1e-6f);
+        CHECK(glm::distance(there.moves[shape][0], position_on(between, jaw)) < 1e-6f);
+    }
     CHECK(glm::distance(found.points[7], found.points[5]) < 1e-3f);
 
     const auto parse_error = [](const char* text) {

@@ -76,6 +76,14 @@ Command add_play(CLI::App& program, PlayOptions& options) {
     add_show(*app, options.show);
     add_model_view(*app, options.model);
     add_profile(*app, options.profile, options.renderer);
+    CLI::Option* const markers =
+        app->add_option(
+               "--markers", options.markers,
+               "place the markers of this recording on the face by clicking, see limn import")
+            ->type_name("TAKE.trc");
+    app->add_option("--map", options.map, "file of their places; default: TAKE.map")
+        ->type_name("FILE")
+        ->needs(markers);
     add_integer(
         *app, "--headless-frames", "render N frames along the camera path, without a window",
         options.headless_frames, 1, 10000);
@@ -89,6 +97,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
         "  limn play gallery --size 1920x1080 --scale auto\n"
         "  limn play model.glb --backdrop sky\n"
         "  limn play --show water.fresnel\n"
+        "  limn play face.glb --markers take.trc\n"
         "  limn play gallery --headless-frames 12 -o frames");
     return {app, [&options] { return run_play(options); }};
 }
@@ -470,7 +479,8 @@ Command add_import(CLI::App& program, ImportOptions& options) {
         "map,\n"
         "or follows from its name. Places are markers of the built-in head, or chin, jaw, mouth,\n"
         "upperlip, lowerlip, nose, nostril, cheek, browinner, browouter, forehead and so on, with\n"
-        "L, R, left or right where there are two.\n\n"
+        "L, R, left or right where there are two. limn play FACE.glb --markers TAKE.trc makes the\n"
+        "map by clicking.\n\n"
         "Examples:\n"
         "  limn import bvh walk.bvh -o walk.glb --set scale=0.01 --set up=z\n"
         "  limn import ict-facekit ICT-FaceKit -o face.glb\n"

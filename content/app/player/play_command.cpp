@@ -105,6 +105,9 @@ Status run_play(const PlayOptions& given) {
     if (no_display) {
         options.headless_frames = kHeadlessFrames;
     }
+    if (options.headless_frames > 0 && !options.markers.empty()) {
+        return fail("--markers: found no window to click in, expected a display");
+    }
     if (options.headless_frames > 0) {
         return play_headless(options, no_display);
     }

@@ -28,6 +28,8 @@ struct PlayOptions {
     std::optional<gpu::Profile> profile;             ///< empty = chosen by the device
     std::string renderer;                            ///< of render_profiles(); empty = the best
     ModelViewOptions model;                          ///< of a single model
+    std::string markers;                             ///< TRC file: its markers are placed on a face
+    std::string map;                                 ///< file of their places; empty: beside it
     int headless_frames = 0;  ///< > 0: renders this many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots

@@ -54,6 +54,10 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
     if (!loaded) {
         return loaded.error();
     }
+    if (!options.markers.empty()) {
+        LIMN_TRY(player->markers_.load(options.markers, options.map));
+        LIMN_TRY(player->open_markers());
+    }
     if (player->device_->caps().software) {
         const IVec2 window_size = player->window_->framebuffer_size();
         const IVec2 size = render_size(player->scale_, window_size);
@@ -144,7 +148,7 @@ Status Player::run() {
         last = now;
 
         if (window_->wants_to_close()) {  // by its button
-            quits = inspector_.edit_count() == 0;
+            quits = inspector_.edit_count() == 0 && !markers_.has_unsaved();
             window_->request_close(false);
             if (!quits) {
                 ask_to_quit();

@@ -6,6 +6,7 @@
 #include "content/app/panels/hud.h"
 #include "content/app/panels/inspector.h"
 #include "content/app/panels/leave_dialog.h"
+#include "content/app/panels/marker_panel.h"
 #include "content/app/panels/model_panel.h"
 #include "content/app/panels/profiler_panel.h"
 #include "content/app/panels/shows_panel.h"
@@ -114,6 +115,10 @@ class Player {
     void edit_furrows();
     /// Shows the skeleton of the selected character, or of the only one; or hides it.
     void toggle_skeleton();
+    /// Shows the places of the markers on the face, or hides them.
+    void toggle_markers();
+    /// Shows them, and the face from the front.
+    [[nodiscard]] Status open_markers();
     /// Makes view and light face the entity whose furrows are edited.
     void face_furrows();
 
@@ -173,6 +178,7 @@ class Player {
     ModelPanel model_panel_;
     FurrowPanel furrows_;
     SkeletonPanel skeleton_;
+    MarkerPanel markers_;
     LightDrag light_;
     SkinDrag skin_;
     LeaveDialog leave_;

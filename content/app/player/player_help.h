@@ -34,6 +34,8 @@ struct HelpState {
     bool skeleton = false;    ///< one is shown
     bool poses = false;       ///< and posed
     bool skin = false;        ///< some skin can be pulled
+    bool markers = false;     ///< of a recording are loaded
+    bool places = false;      ///< and their places are edited
     bool panel = false;       ///< some panel is open
     bool relief = false;      ///< some material has surface detail beyond normal maps
 };

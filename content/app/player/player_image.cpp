@@ -213,6 +213,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
         draw_path_overlay(view, stage_->world);
     }
     skeleton_.draw_overlay(view, stage_->world);
+    markers_.draw_overlay(view, stage_->world);
     draw_comparison_overlay(hud_->style(), stage_->world);
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
@@ -252,6 +253,10 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     }
     skeleton_.draw(hud_->style(), stage_->world, inspector_.undo_stack());
     if (const std::string message = skeleton_.take_message(); !message.empty()) {
+        hud_->toast(message);
+    }
+    markers_.draw(hud_->style(), stage_->world);
+    if (const std::string message = markers_.take_message(); !message.empty()) {
         hud_->toast(message);
     }
     model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
@@ -309,6 +314,8 @@ HelpState Player::help_state() const {
         .skeleton = skeleton_.is_open(),
         .poses = skeleton_.poses(),
         .skin = !std::as_const(stage_->world).query<const PullableSkin>().empty(),
+        .markers = markers_.has_take(),
+        .places = markers_.is_open(),
         .panel =
             inspector_.open || profiler_.open || buffers_->open || shows_.open || model_panel_.open,
         .relief = has_relief(stage_->world)};

@@ -118,6 +118,10 @@ bool Player::edit_by_pointer(const WindowEvents& events) {
     if (skeleton_.take_pointer(world, undo, view_, pointer)) {
         return true;
     }
+    // Clicks before the first frame were at nothing that is shown.
+    if (last_window_size_ != IVec2(0) && markers_.take_pointer(world, view_, pointer)) {
+        return true;
+    }
     const bool directs = pointer.left && window_->is_key_down(GLFW_KEY_L) && !pointer.blocked
                          && !hud_->wants_keyboard();
     skin_.follow(std::as_const(world), pointer_ray(), pointer.left, pointer.blocked || directs);

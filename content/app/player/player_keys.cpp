@@ -33,6 +33,9 @@ bool edits_furrows(const HelpState& state) {
 bool shows_relief(const HelpState& state) {
     return state.relief;
 }
+bool has_markers(const HelpState& state) {
+    return state.markers;
+}
 bool has_edits(const HelpState& state) {
     return state.edited;
 }
@@ -98,6 +101,8 @@ std::span<const PlayerKey> Player::keys() {
         {"Panels", "M", "clips, morph targets and cameras of the model", GLFW_KEY_M, 0,
          [](Player& p) { p.model_panel_.open = p.stage_->scene.model && !p.model_panel_.open; },
          [](const HelpState& state) { return state.model; }},
+        {"Panels", "Shift M", "places of a recording's markers on the face", GLFW_KEY_M, kShift,
+         [](Player& p) { p.toggle_markers(); }, has_markers},
 
         {.heading = "Edit",
          .label = "Click",
@@ -142,6 +147,10 @@ std::span<const PlayerKey> Player::keys() {
          .label = "Drag",
          .text = "skeleton: a ring of the joint turns it, and sets a key",
          .shown = [](const HelpState& state) { return state.poses; }},
+        {.heading = "Edit",
+         .label = "Click",
+         .text = "markers: the place of the selected one on the face",
+         .shown = [](const HelpState& state) { return state.places; }},
         {"Edit", "Ctrl Z", "undo", GLFW_KEY_Z, kControl, [](Player& p) { p.undo_or_redo(true); },
          has_edits},
         {"Edit", "Ctrl Y", "redo", GLFW_KEY_Y, kControl, [](Player& p) { p.undo_or_redo(false); },
@@ -203,6 +212,10 @@ void Player::close_one_or_ask() {
         skeleton_.close();
         return;
     }
+    if (markers_.is_open()) {
+        markers_.close();
+        return;
+    }
     const std::pair<std::string_view, bool*> panels[] = {
         {"Keys", &hud_->help_open},      {"Shows", &shows_.open},
         {"Inspector", &inspector_.open}, {"Profiler", &profiler_.open},
@@ -241,6 +254,10 @@ void Player::toggle_paths() {
 }
 
 void Player::undo_or_redo(bool undo) {
+    if (undo && markers_.is_open()) {
+        hud_->toast(markers_.undo(stage_->world) ? "undo: place of a marker" : "nothing to undo");
+        return;
+    }
     UndoStack& stack = inspector_.undo_stack();
     const std::string label = undo ? stack.undo(stage_->world) : stack.redo(stage_->world);
     const char* word = undo ? "undo" : "redo";

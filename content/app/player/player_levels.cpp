@@ -37,6 +37,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     inspector_.reset();
     furrows_.reset();
     skeleton_.reset();
+    markers_.close();
     camera_ = {};
     detail_costs_.forget();
     const Bounds& bounds = stage_->scene.bounds;
@@ -134,7 +135,9 @@ void Player::leave_level(std::function<void()> action, const char* verb) {
 }
 
 void Player::ask_to_quit() {
-    leave_.ask("Quit Limn?", "Quit", [this] { window_->request_close(); });
+    const char* const question =
+        markers_.has_unsaved() ? "Quit Limn? Places of markers are not saved." : "Quit Limn?";
+    leave_.ask(question, "Quit", [this] { window_->request_close(); });
 }
 
 std::vector<std::filesystem::file_time_type> Player::level_file_times() const {

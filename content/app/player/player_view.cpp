@@ -163,6 +163,30 @@ void Player::toggle_skeleton() {
     }
 }
 
+void Player::toggle_markers() {
+    if (markers_.is_open()) {
+        markers_.close();
+    } else if (const Status opened = open_markers(); !opened) {
+        hud_->toast(opened.error().message, ToastKind::Bad);
+    }
+}
+
+Status Player::open_markers() {
+    LIMN_TRY(markers_.open(stage_->world, inspector_.selected()));
+    model_panel_.open = false;
+    if (const auto* lens = std::as_const(stage_->world).find<Camera>(stage_->scene.camera)) {
+        camera_.lens = *lens;
+    }
+    if (const auto face = markers_.find_face(stage_->world)) {
+        const IVec2 size = glm::max(window_->framebuffer_size(), IVec2(1));
+        const float distance = framing_distance(
+            camera_, face->radius, static_cast<float>(size.x) / static_cast<float>(size.y));
+        start_orbit(
+            camera_, look_at(face->center + distance * face->front, face->center), face->center);
+    }
+    return Done{};
+}
+
 void Player::face_furrows() {
     World& world = stage_->world;
     const auto* const transform = std::as_const(world).find<WorldTransform>(furrows_.entity());

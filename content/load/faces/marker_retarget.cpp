@@ -2,6 +2,7 @@
 
 #include "content/bake/point_warp.h"
 #include "content/bake/surface_fit.h"
+#include "content/load/faces/face_skin.h"
 #include "content/load/files/json_document.h"
 #include "content/make/head/head.h"
 #include "content/make/head/head_markers.h"
@@ -25,6 +26,7 @@ namespace {
 constexpr float kSameChart = 0.002f;  // between vertices of one place, in texture coordinates
 constexpr float kMaxChart = 0.03f;  ///< from a place to the nearest vertex, in texture coordinates
 constexpr float kRidge = 4e-3f;     ///< cost of weights, of the square motion of the largest shape
+                                    ///< that moves the same markers
 constexpr int kSweeps = 40;         ///< of coordinate descent
 constexpr float kSettled = 1e-4f;   ///< change of weights in a sweep that ends it
 
@@ -141,23 +143,6 @@ std::string nearest_name(const std::string& name) {
            + did_you_mean(name, std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-/// The mesh whose shapes move most vertices.
-const MeshData* find_skin(const GltfScene& face) {
-    const MeshData* skin = nullptr;
-    std::size_t most = 0;
-    for (const MeshData& mesh : face.meshes) {
-        std::size_t moved = 0;
-        for (const MorphTarget& morph : mesh.morphs) {
-            moved += morph.vertices.size();
-        }
-        if (moved > most) {
-            most = moved;
-            skin = &mesh;
-        }
-    }
-    return skin;
-}
-
 /// Nearest vertex by texture coordinates, or none; of those about as near the foremost, since gums
 /// and teeth may lie behind lips.
 std::optional<std::uint32_t> vertex_at(const MeshData& skin, const Vec2& chart) {
@@ -174,6 +159,34 @@ std::optional<std::uint32_t> vertex_at(const MeshData& skin, const Vec2& chart) 
         }
     }
     return found;
+}
+
+/// Sums of the squared motion of all markers, for each shape.
+std::vector<float> squares_of(std::span<const std::vector<Vec3>> moves) {
+    std::vector<float> squares;
+    for (const std::vector<Vec3>& shape : moves) {
+        float& sum = squares.emplace_back(0.0f);
+        for (const Vec3& move : shape) {
+            sum += glm::dot(move, move);
+        }
+    }
+    return squares;
+}
+
+/// A share of the square motion of the largest other shape, by how far both move the same markers.
+std::vector<float> cost_of_weights(std::span<const std::vector<Vec3>> moves) {
+    const std::vector<float> squares = squares_of(moves);
+    std::vector<float> costs(moves.size(), 0.0f);
+    for (std::size_t s = 0; s < moves.size(); ++s) {
+        for (std::size_t t = 0; t < moves.size() && squares[s] > 0.0f; ++t) {
+            float common = 0.0f;
+            for (std::size_t m = 0; m < moves[s].size(); ++m) {
+                common += glm::length(moves[s][m]) * glm::length(moves[t][m]);
+            }
+            costs[s] = std::max(costs[s], kRidge * common * common / squares[s]);
+        }
+    }
+    return costs;
 }
 
 /// Root of the mean squared distance from the mean of some points.
@@ -238,6 +251,47 @@ parse_marker_map(std::string_view text, const std::string& file) {
     return places;
 }
 
+std::string write_marker_map(std::string_view text, std::span<const FaceMarkerPlace> places) {
+    const auto line_of = [](const FaceMarkerPlace& place) {
+        std::string line = place.marker + " =";
+        for (int axis = 0; axis < 3 && place.place.empty(); ++axis) {
+            line += " " + fixed_text(static_cast<double>(place.point[axis]), 6);
+        }
+        return place.place.empty() ? line : line + " " + place.place;
+    };
+    std::string written;
+    std::vector<bool> done(places.size(), false);
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view row = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const auto parsed = parse_marker_map(row, {});
+        if (parsed && parsed->empty()) {
+            written += std::string(row) + '\n';
+            continue;
+        }
+        const auto found =
+            parsed ? std::ranges::find(places, parsed->front().marker, &FaceMarkerPlace::marker)
+                   : places.end();
+        if (found == places.end()) {
+            continue;
+        }
+        const bool is_same = line_of(*found) == line_of(parsed->front());
+        written += (is_same ? std::string(row) : line_of(*found)) + '\n';
+        done[static_cast<std::size_t>(found - places.begin())] = true;
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        written += done[i] ? std::string() : line_of(places[i]) + '\n';
+    }
+    return written;
+}
+
+std::optional<Vec3> find_named_place(const MeshData& skin, std::string_view name) {
+    const std::optional<Vec2> chart = chart_of(name);
+    const auto vertex = chart ? vertex_at(skin, *chart) : std::nullopt;
+    return vertex ? std::optional(skin.positions[*vertex]) : std::nullopt;
+}
+
 std::vector<std::string_view> place_names() {
     std::vector<std::string_view> names;
     for (const NamedPlace& place : kPlaces) {
@@ -246,41 +300,48 @@ std::vector<std::string_view> place_names() {
     return names;
 }
 
-Result<FaceMarkers> place_markers(
-    const GltfScene& face, std::span<const std::string> markers,
-    std::span<const FaceMarkerPlace> map, const std::string& file) {
-    const MeshData* skin = find_skin(face);
-    if (skin == nullptr) {
-        return fail("{}: found no mesh with shapes", face.name);
-    }
-    std::string wrong;
-    const auto add_wrong = [&](const std::string& what) {
-        wrong += (wrong.empty() ? "" : ", ") + what;
-    };
+Status check_marker_map(
+    std::span<const std::string> markers, std::span<const FaceMarkerPlace> map,
+    const std::string& file) {
+    std::vector<std::string> wrong;
     for (const FaceMarkerPlace& place : map) {
         if (std::ranges::find(markers, place.marker) == markers.end()) {
-            add_wrong(
+            wrong.push_back(
                 in_quotes(place.marker)
                 + did_you_mean(
                     place.marker, std::vector<std::string_view>(markers.begin(), markers.end())));
         }
     }
-    if (!wrong.empty()) {
-        return fail("{}: found no markers {} in the recording", file, wrong);
+    return wrong.empty()
+               ? Status(Done{})
+               : fail("{}: found no markers {} in the recording", file, join_text(wrong, ", "));
+}
+
+Result<FaceMarkers> place_markers(
+    const GltfScene& face, std::span<const std::string> markers,
+    std::span<const FaceMarkerPlace> map, const std::string& file) {
+    const MeshData* skin = find_face_skin(face.meshes);
+    if (skin == nullptr) {
+        return fail("{}: found no mesh with shapes", face.name);
     }
-    std::vector<std::uint32_t> vertices;
+    LIMN_TRY(check_marker_map(markers, map, file));
+    std::string wrong;
+    const auto add_wrong = [&](const std::string& what) {
+        wrong += (wrong.empty() ? "" : ", ") + what;
+    };
+    std::vector<SkinPoint> places;
     for (const std::string& marker : markers) {
         const auto line = std::ranges::find(map, marker, &FaceMarkerPlace::marker);
         const bool is_mapped = line != map.end();
         if (is_mapped && line->place.empty()) {
-            vertices.push_back(label_vertices(std::span(&line->point, 1), skin->positions)[0]);
+            places.push_back(nearest_on_mesh(*skin, line->point));
             continue;
         }
         const std::string name = is_mapped ? line->place : marker;
         const std::optional<Vec2> chart = chart_of(name);
         const std::optional<std::uint32_t> vertex = chart ? vertex_at(*skin, *chart) : std::nullopt;
         if (vertex) {
-            vertices.push_back(*vertex);
+            places.push_back({{*vertex, *vertex, *vertex}, {1, 0, 0}});
         } else {
             add_wrong(
                 chart ? in_quotes(name) + " (beyond the texture of the face)" : nearest_name(name));
@@ -293,21 +354,24 @@ Result<FaceMarkers> place_markers(
             file.empty() ? face.name : file, wrong);
     }
     FaceMarkers result;
-    for (const std::uint32_t v : vertices) {
-        result.points.push_back(skin->positions[v]);
+    for (const SkinPoint& place : places) {
+        result.points.push_back(position_on(place, skin->positions));
     }
     for (const MorphTarget& morph : skin->morphs) {
-        std::vector<Vec3>& moves = result.moves.emplace_back(vertices.size(), Vec3(0));
+        std::vector<Vec3>& moves = result.moves.emplace_back(places.size(), Vec3(0));
         result.shapes.push_back(morph.name);
         if (!morph.drivers.empty() || morph.name.starts_with("viseme")) {
             continue;  // its weight follows those of others, or it repeats what units show
         }
+        std::vector<Vec3> offsets(skin->positions.size(), Vec3(0));
         for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
-            for (std::size_t m = 0; m < vertices.size(); ++m) {
-                moves[m] += vertices[m] == morph.vertices[i] ? morph.positions[i] : Vec3(0);
-            }
+            offsets[morph.vertices[i]] = morph.positions[i];
+        }
+        for (std::size_t m = 0; m < places.size(); ++m) {
+            moves[m] = position_on(places[m], offsets);
         }
     }
+    result.costs = cost_of_weights(result.moves);
     return result;
 }
 
@@ -335,15 +399,7 @@ void fit_shape_weights(
     LIMN_CHECK(weights.size() == face.shapes.size() && offsets.size() == face.points.size());
     std::ranges::fill(weights, 0.0f);
     std::vector<Vec3> left(offsets.begin(), offsets.end());  // what is still to be explained
-    std::vector<float> squares(face.shapes.size(), 0.0f);
-    float most = 0.0f;
-    for (std::size_t s = 0; s < face.shapes.size(); ++s) {
-        for (std::size_t m = 0; m < left.size(); ++m) {
-            squares[s] += glm::dot(face.moves[s][m], face.moves[s][m]);
-        }
-        most = std::max(most, squares[s]);
-    }
-    const float ridge = kRidge * most;
+    const std::vector<float> squares = squares_of(face.moves);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         float largest = 0.0f;
         for (std::size_t s = 0; s < face.shapes.size(); ++s) {
@@ -351,11 +407,12 @@ void fit_shape_weights(
                 weights[s] = 0.0f;
                 continue;
             }
-            float along = -ridge * weights[s];
+            float along = -face.costs[s] * weights[s];
             for (std::size_t m = 0; m < left.size(); ++m) {
                 along += glm::dot(face.moves[s][m], left[m]);
             }
-            const float next = std::clamp(weights[s] + along / (squares[s] + ridge), 0.0f, 1.0f);
+            const float next =
+                std::clamp(weights[s] + along / (squares[s] + face.costs[s]), 0.0f, 1.0f);
             const float change = next - weights[s];
             for (std::size_t m = 0; m < left.size(); ++m) {
                 left[m] -= change * face.moves[s][m];

@@ -4,6 +4,7 @@
 #include "content/load/gltf/gltf_scene.h"
 #include "ecs/base/result.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,21 @@ struct FaceMarkerPlace {
 [[nodiscard]] Result<std::vector<FaceMarkerPlace>>
 parse_marker_map(std::string_view text, const std::string& file);
 
+/// The map `text` with these places in it: comments and lines that say the same stay as they are,
+/// lines of other markers go, and new ones follow.
+[[nodiscard]] std::string
+write_marker_map(std::string_view text, std::span<const FaceMarkerPlace> places);
+
+/// The point of the skin at rest that has this name, as the right side of a map; none if the name
+/// is unknown or the mesh lacks the texture coordinates of the built-in head there.
+[[nodiscard]] std::optional<Vec3> find_named_place(const MeshData& skin, std::string_view name);
+
+/// Fails with one line that lists markers of the map which are not among `markers`, each with the
+/// nearest name. `file`: of the map, for messages.
+[[nodiscard]] Status check_marker_map(
+    std::span<const std::string> markers, std::span<const FaceMarkerPlace> map,
+    const std::string& file);
+
 /// Places that many sets of markers have, as "chin" or "browinner", of which some have a left and a
 /// right side. In names of markers their case and "_", "-", "." and blanks do not count, and the
 /// side may be "left", "right", "l" or "r", before or after.
@@ -39,12 +55,14 @@ struct FaceMarkers {
     std::vector<Vec3> points;              ///< at rest [m]
     std::vector<std::string> shapes;       ///< names
     std::vector<std::vector<Vec3>> moves;  ///< of the points, for each of the shapes at weight 1
+    std::vector<float> costs;              ///< of the square weight of each shape [m^2]
 };
 
 /// Places come from `map`, else from the names of the markers. Named ones need a face with the
-/// texture coordinates of the built-in head: one that `limn import` or `limn make head` wrote. A
-/// point is that of the nearest vertex of the skin. Fails with one line that lists wrong names and
-/// markers without a place, each with the nearest name. `file`: of the map, for messages.
+/// texture coordinates of the built-in head: one that `limn import` or `limn make head` wrote. They
+/// are at the nearest vertex of the skin, points of a map at its nearest point. Fails with one line
+/// that lists wrong names and markers without a place, each with the nearest name. `file`: of the
+/// map, for messages.
 [[nodiscard]] Result<FaceMarkers> place_markers(
     const GltfScene& face, std::span<const std::string> markers,
     std::span<const FaceMarkerPlace> map, const std::string& file);
@@ -57,7 +75,8 @@ retarget_markers(const MarkerMotion& motion, std::span<const Vec3> points, float
 
 /// Weights of 0 .. 1, one per shape, for which the points move by `offsets` as closely as they can
 /// (coordinate descent from 0). Weights have a cost, so that many shapes of small motion do not add
-/// up to a grimace; it damps these: markers of brows alone move them half.
+/// up to a grimace: relative to the largest shape that moves the same markers, so that brows, which
+/// move less than a jaw, follow as far as it.
 void fit_shape_weights(
     const FaceMarkers& face, std::span<const Vec3> offsets, std::span<float> weights);
 
