@@ -367,6 +367,52 @@ TEST_CASE("head: the upper lid folds along a line 3 to 6 mm above its edge") {
     CHECK(folded > 8);
 }
 
+TEST_CASE("head: the loops above the fold of the upper lid lie one above the other in every face") {
+    const HeadLayout& layout = head_layout();
+    for (const float sex : {-1.0f, 0.0f, 1.0f}) {
+        for (const float age : {0.0f, 1.0f}) {
+            for (const float build : {-1.0f, 1.0f}) {
+                CAPTURE(sex);
+                CAPTURE(age);
+                CAPTURE(build);
+                const std::vector<Vec3> skin = wrap_head({.age = age, .sex = sex, .build = build});
+                const auto find = [&](int loop, float angle) {
+                    float nearest = INFINITY;
+                    std::uint32_t found = 0;
+                    for (std::uint32_t v : left_loops(HeadLoops::Eye, loop, loop)) {
+                        const float off = std::abs(layout.vertices[v].angle - angle);
+                        if (off < nearest) {
+                            nearest = off;
+                            found = v;
+                        }
+                    }
+                    return skin[found].y;
+                };
+                for (const float angle : {1.2f, 1.4f, 1.57f, 1.7f, 1.9f}) {
+                    for (int loop = kLidCreaseLoop - 4; loop < kLidLoop; ++loop) {
+                        CHECK(find(loop, angle) > find(loop + 1, angle) + 0.04f);  // [cm]
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("head: little light is left in nostrils, and behind the tip of the nose") {
+    const HeadLayout& layout = head_layout();
+    const auto light = [&](std::uint32_t v) {
+        return head_skin_color(layout.vertices[v], wrapped()[v], HeadShape{}).x;
+    };
+    for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim + 1, kNostrilLoops)) {
+        CHECK(light(v) < 0.15f);
+    }
+    for (const std::uint32_t v : left_loops(HeadLoops::Nostril, kNostrilRim - 1, kNostrilRim - 1)) {
+        const float towards_tip = std::sin(layout.vertices[v].angle);
+        CHECK((towards_tip > -0.7f || light(v) < 0.25f));
+        CHECK((towards_tip < 0.7f || light(v) > 0.8f));
+    }
+}
+
 TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the skull, roots first") {
     CHECK(scalp_hair_cover({0, 14, 0}) == 1);
     CHECK(scalp_hair_cover({0, 7, 10}) == 0);  // forehead, cheek, neck

@@ -4,6 +4,7 @@
 #include "content/make/patterns/mask_pattern.h"
 #include "content/make/patterns/patterns.h"
 #include "content/make/patterns/ridge_pattern.h"
+#include "content/make/patterns/sclera_pattern.h"
 #include "content/make/patterns/sprite_fluid.h"
 #include "content/make/patterns/sprite_patterns.h"
 #include "ecs/base/hash.h"
@@ -82,7 +83,7 @@ std::vector<PatternKind> plain_kinds() {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three complete images of the requested size") {
-    REQUIRE(pattern_kinds().size() == 44);
+    REQUIRE(pattern_kinds().size() == 45);
     for (const PatternKind& kind : plain_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -442,6 +443,35 @@ TEST_CASE(
     }
     CHECK(shared > 20);
     CHECK(channel(masks, 2, 2, 0) == 0);
+}
+
+TEST_CASE("patterns: vessels redden the white of an eye from its corners, and leave out the iris") {
+    ScleraPattern pattern;
+    pattern.image.size = 256;
+    pattern.redness = 1;
+    const ImageData image = make_sclera(pattern).base_color;
+    int crossed = 0;     // rows of the white beside the iris that a vessel crosses
+    double red[2] = {};  // sum of how much redder than white, at the sides, above and below
+    for (int y = 0; y < 256; ++y) {
+        bool vessel = false;
+        for (int x = 0; x < 256; ++x) {
+            const Vec2 p = (Vec2(x, y) + 0.5f) / 128.0f - 1.0f;
+            const int more = channel(image, x, y, 0) - channel(image, x, y, 1);
+            CHECK(more >= 0);
+            if (glm::length(p) < 0.5f || glm::length(p) > 1.1f) {
+                CHECK(channel(image, x, y, 1) == 255);
+            } else if (std::abs(p.x) != std::abs(p.y)) {
+                red[std::abs(p.x) > std::abs(p.y) ? 0 : 1] += more;
+            }
+            vessel |= glm::length(p) < 0.85f && more > 60;
+        }
+        crossed += vessel ? 1 : 0;
+    }
+    CHECK(red[0] > 3 * red[1]);
+    CHECK(crossed > 60);
+    pattern.redness = 0;
+    const ImageData white = make_sclera(pattern).base_color;
+    CHECK(std::ranges::all_of(white.pixels, [](std::uint8_t value) { return value == 255; }));
 }
 
 TEST_CASE("patterns: images tile without a seam") {

@@ -296,10 +296,18 @@ Vec3 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShap
             color = Vec3(0.45f, 0.2f, 0.2f);
         }
     }
-    if (vertex.loops == HeadLoops::Nostril && vertex.loop > kNostrilRim) {
-        constexpr std::array<Vec3, 3> kDark = {
-            Vec3(0.5f, 0.24f, 0.2f), Vec3(0.14f, 0.045f, 0.035f), Vec3(0.02f, 0.006f, 0.005f)};
-        color = kDark[std::min(vertex.loop - kNostrilRim - 1, 2)];
+    if (vertex.loops == HeadLoops::Nostril) {
+        // What lies behind the tip of the nose, and is seen below it, gets little light, and the
+        // cavity none: lamps without shadows would light both.
+        constexpr std::array<float, kNostrilRim + 1> kBehind = {1, 0.8f, 0.58f, 0.36f, 0.2f, 0.1f};
+        constexpr std::array<float, 4> kInside = {0.4f, 0.1f, 0.03f, 0.008f};
+        const int inwards = vertex.loop - kNostrilRim;
+        const float open = inwards < 0 ? 1.0f : kInside[std::min(inwards, 3)];
+        const float behind = glm::smoothstep(0.35f, -0.6f, std::sin(vertex.angle));
+        const float light = std::min(
+            open, glm::mix(1.0f, kBehind[std::min<int>(vertex.loop, kNostrilRim)], behind));
+        // Skin lights skin red.
+        color *= Vec3(light, std::pow(light, 1.35f), std::pow(light, 1.4f));
     }
     if (vertex.loops == HeadLoops::Eye) {
         const bool upper = std::sin(vertex.angle) > 0;

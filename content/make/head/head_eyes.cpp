@@ -58,14 +58,21 @@ Vec3 iris_tint(float radius, float angle) {
 
 /// `angle` 0 lateral, pi / 2 up.
 Vec3 sclera_tint(float radius, float angle, float z) {
-    const float corner = glm::smoothstep(0.75f, 1.2f, radius) * square(std::cos(angle));
+    // Pink towards the corners, a little yellow below.
+    const float corner = glm::smoothstep(0.66f, 1.15f, radius) * square(std::cos(angle));
     const float up = std::sin(angle) * radius;
-    Vec3 color = glm::mix(Vec3(0.80f, 0.755f, 0.71f), Vec3(0.80f, 0.50f, 0.44f), 0.75f * corner);
-    color *= glm::mix(1.0f, 0.42f, glm::smoothstep(0.15f, 0.6f, up));  // shaded by the upper lid
-    color *= glm::mix(1.0f, 0.8f, glm::smoothstep(-0.3f, -0.6f, up));  // and by the lower one
+    Vec3 color = glm::mix(Vec3(0.76f, 0.71f, 0.655f), Vec3(0.74f, 0.43f, 0.37f), 0.8f * corner);
+    color *= glm::mix(Vec3(1), Vec3(1, 0.97f, 0.9f), glm::smoothstep(0.0f, -0.6f, up));
+    // Shaded by the upper lid and its lashes, and by the lower one; skin lights it red.
+    const float upper = glm::smoothstep(0.02f, 0.5f, up);
+    color *= glm::mix(Vec3(1), Vec3(0.36f, 0.30f, 0.28f), upper);
+    color *= glm::mix(Vec3(1), Vec3(0.74f, 0.67f, 0.64f), glm::smoothstep(-0.26f, -0.58f, up));
+    color *=
+        glm::mix(1.0f, 0.62f, glm::smoothstep(0.8f, 1.15f, radius) * std::abs(std::cos(angle)));
+    // The limbus, 1.5 mm wide.
     color = glm::mix(
         Vec3(0.12f, 0.11f, 0.10f), color,
-        glm::smoothstep(kLimbus - 0.02f, kLimbus + 0.09f, radius));
+        glm::smoothstep(kLimbus - 0.02f, kLimbus + 0.11f, radius));
     return z < 0 ? Vec3(0.3f, 0.05f, 0.04f) : color;
 }
 

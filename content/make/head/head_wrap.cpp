@@ -256,11 +256,14 @@ class HeadWrap {
     }
 
     /// Moves `p` of a loop of the upper lid towards its height between the lid's edge and its fold,
-    /// or beside that, so that a loop lies in the fold; not at the corners, where loops meet.
+    /// or beside that, so that a loop lies in the fold; not at the corners, where loops meet. The
+    /// next loops stay above these, however far the brow of a man comes down.
     static Vec3 to_lid(const HeadVertex& vertex, Vec3 p) {
-        constexpr float kAbove = 0.2f;  // from the fold to the next loop [cm]
+        constexpr float kAbove = 0.2f;   // from the fold to the next loop [cm]
+        constexpr float kApart = 0.13f;  // of further ones, at least [cm]
+        constexpr int kFurther = 3;
         if (vertex.loops != HeadLoops::Eye || vertex.loop >= kLidLoop
-            || vertex.loop < kLidCreaseLoop - 1) {
+            || vertex.loop < kLidCreaseLoop - 1 - kFurther) {
             return p;
         }
         const Vec3 margin = lid_margin(vertex.angle);
@@ -268,6 +271,11 @@ class HeadWrap {
         const float crease = lid_crease(margin.x);
         const float height = up > 1 ? crease + kAbove : glm::mix(margin.y, crease, up);
         const float share = glm::smoothstep(0.4f, 0.75f, std::sin(vertex.angle));
+        if (const int further = kLidCreaseLoop - 1 - vertex.loop; further > 0) {
+            const float lowest = crease + kAbove + kApart * static_cast<float>(further);
+            p.y = glm::mix(p.y, std::max(p.y, lowest), share);
+            return p;
+        }
         p.y = glm::mix(p.y, height, share);
         p.x = glm::mix(p.x, std::copysign(margin.x, p.x), share);
         return p;

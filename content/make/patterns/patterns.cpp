@@ -16,6 +16,7 @@
 #include "content/make/patterns/puff_pattern.h"
 #include "content/make/patterns/relief_patterns.h"
 #include "content/make/patterns/ridge_pattern.h"
+#include "content/make/patterns/sclera_pattern.h"
 #include "content/make/patterns/solid_pattern.h"
 #include "content/make/patterns/sprite_patterns.h"
 #include "content/make/patterns/studio_pattern.h"
@@ -444,6 +445,8 @@ std::span<const PatternKind> pattern_kinds() {
             "rosettes", "carved flowers in frames, with a relief map", PatternKindMaps::Relief),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
         pattern_kind<ShardPattern, make_shard>("shard", "a flipbook of different splinters"),
+        pattern_kind<ScleraPattern, make_sclera>(
+            "sclera", "vessels on the white of an eye, for the eyes of a head"),
         pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),
         pattern_kind<SnowflakePattern, make_snowflake>(
             "snowflake", "a flipbook of different snow crystals"),
