@@ -23,6 +23,19 @@ TEST_CASE("bench_command: options of particles and faces are passed to their pro
         == Words{"--repeats", "9", "--csv", "-", "--only", "growth", "--most", "2000"});
 }
 
+TEST_CASE("bench_command: levels of detail are those of the image, unless the user sets them") {
+    BenchOptions options;
+    options.size = {640, 360};
+    options.assignments = {{"rendering.level_rows", "1080"}};
+    const std::vector<Assignment> all = bench_assignments(options);
+    REQUIRE(all.size() == 2);
+    CHECK(all[0].path == "rendering.level_rows");
+    CHECK(all[0].value == "360");
+    CHECK(all[1].value == "1080");  // assigned in order: the last one counts
+    options.size = {32, 8};
+    CHECK(bench_assignments(options)[0].value == "16");  // the least that the field takes
+}
+
 TEST_CASE("bench_command: --only is refused for scenes without parts") {
     BenchOptions options;
     options.scene = "gallery";

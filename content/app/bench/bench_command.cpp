@@ -22,6 +22,7 @@
 #include <chrono>
 #include <ctime>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace limn {
@@ -207,6 +208,13 @@ std::vector<std::string> bench_program_arguments(const BenchOptions& options) {
     return arguments;
 }
 
+std::vector<Assignment> bench_assignments(const BenchOptions& options) {
+    std::vector<Assignment> all = {
+        {"rendering.level_rows", std::to_string(std::max(options.size.y, 16))}};
+    all.insert(all.end(), options.assignments.begin(), options.assignments.end());
+    return all;
+}
+
 Status check_bench_options(const BenchOptions& options) {
     if (options.most > 0 && options.scene != kParticlesName) {
         return fail("--most is for `particles`, found `{}`", options.scene);
@@ -239,7 +247,7 @@ Status run_bench(const BenchOptions& options) {
         return run_fakephong_bench(options);
     }
     Result<std::unique_ptr<Stage>> opened =
-        open_stage(options.scene, {.assignments = options.assignments});
+        open_stage(options.scene, {.assignments = bench_assignments(options)});
     if (!opened) {
         return opened.error();
     }

@@ -39,6 +39,10 @@ struct BenchOptions {
 /// Arguments of the program that measures `particles`, `faces` or `characters`.
 [[nodiscard]] std::vector<std::string> bench_program_arguments(const BenchOptions& options);
 
+/// What `limn bench` sets in a level: levels of detail for the image's resolution, as `limn play`
+/// chooses them, then what the options assign.
+[[nodiscard]] std::vector<Assignment> bench_assignments(const BenchOptions& options);
+
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
 /// next frame. Adds the times to `report` unless it is null.
 void run_bench_frame(
