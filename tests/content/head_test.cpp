@@ -435,6 +435,21 @@ TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the sku
     }
 }
 
+TEST_CASE("head: single hairs line the scalp where its cards end") {
+    const HeadPart hair = make_scalp_hair(HeadShape{});
+    int fine = 0;
+    for (std::size_t v = 0; v + 1 < hair.points.size(); v += 2) {  // pairs across a card
+        const Vec3& a = hair.points[v].rest;
+        const Vec3& b = hair.points[v + 1].rest;
+        const float width = glm::distance(a, b);  // [cm]
+        if (hair.mesh.uvs[v].y == 0) {
+            fine += width < 0.07f ? 1 : 0;
+            CHECK((width < 0.07f || scalp_hair_cover(0.5f * (a + b)) > 0.3f));
+        }
+    }
+    CHECK(fine > 80);
+}
+
 TEST_CASE("head: at weight 1 of the shape age every part is that of seventy years") {
     for (const HeadPartKind part : {HeadPartKind::Skin, HeadPartKind::Hair, HeadPartKind::Scalp}) {
         const MeshData mesh =

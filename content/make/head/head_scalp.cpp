@@ -64,38 +64,44 @@ struct Card {
     float lift;            ///< of its tip from the scalp [cm]
     float strand;          ///< u of the image at its center line
     float shade;
-    float root_shade;  ///< factor of the shade at the root, where less light arrives
+    float root_shade;        ///< factor of the shade at the root, where less light arrives
+    std::uint32_t rows = 3;  ///< of vertices
+    float depth = 0.1f;      ///< of the root below the scalp [cm]
+    float detail = 0;        ///< of the surface that it lies on
+    float image_end = 1;     ///< v of the image at the tip
 };
 
-/// Roots evenly over the skull (R. Swinbank and R. Purser, "Fibonacci Grids", 2006), from below, so
-/// that upper layers come last.
-Vec3 scalp_root(int i, int count, const Vec3& jitter, const HeadShape& shape) {
+/// Points evenly on a sphere around the skull (R. Swinbank and R. Purser, "Fibonacci Grids", 2006),
+/// from below, so that upper layers come last.
+Vec3 around_skull(int i, int count) {
     const float up = -1 + 2 * (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
     const float turn = kPi * (3 - std::sqrt(5.0f)) * static_cast<float>(i);
     const float ring = std::sqrt(1 - up * up);
-    Vec3 root =
-        kSkullCenter + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn)) + jitter;
+    return kSkullCenter + 9.0f * Vec3(ring * std::sin(turn), up, ring * std::cos(turn));
+}
+
+Vec3 to_scalp(Vec3 root, const HeadShape& shape, float detail = 0) {
     for (int step = 0; step < 3; ++step) {
-        root = project_to_head(root, shape, 0);
+        root = project_to_head(root, shape, detail);
     }
     return root;
 }
 
 void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
-    constexpr std::uint32_t kRows = 3;
-    Vec3 at = card.root - 0.1f * card.out;
+    const auto steps = static_cast<float>(card.rows - 1);
+    Vec3 at = card.root - card.depth * card.out;
     Vec3 out = card.out;
-    for (std::uint32_t row = 0; row < kRows; ++row) {
-        const float t = static_cast<float>(row) / (kRows - 1);
+    for (std::uint32_t row = 0; row < card.rows; ++row) {
+        const float t = static_cast<float>(row) / steps;
         const float narrow = 1 - card.taper * t * t;
         if (row > 0) {
             const Vec3 flow = normalize_or(card.flow - glm::dot(card.flow, out) * out, card.flow);
             const Vec3 lie = hair_flow(at, out);
-            at += card.length / (kRows - 1) * glm::normalize(glm::mix(flow, lie, 0.6f * t));
-            const Vec3 slope = head_gradient(at, shape, 0);
+            at += card.length / steps * glm::normalize(glm::mix(flow, lie, 0.6f * t));
+            const Vec3 slope = head_gradient(at, shape, card.detail);
             out = normalize_or(slope, out);
             const float rise = card.lift * std::sin(0.5f * kPi * std::min(1.6f * t, 1.0f));
-            at += (rise - head_distance(at, shape, 0)) * out;
+            at += (rise - head_distance(at, shape, card.detail)) * out;
         }
         const Vec3 across = normalize_or(glm::cross(card.flow, out), Vec3(1, 0, 0));
         for (const float edge : {-1.0f, 1.0f}) {
@@ -104,12 +110,12 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
             part.mesh.positions.push_back(p);
             part.mesh.normals.push_back(glm::normalize(out + 0.2f * edge * across));
             part.mesh.uvs.emplace_back(
-                card.strand + 0.5f * edge * card.width * narrow / kImageWidth, t);
+                card.strand + 0.5f * edge * card.width * narrow / kImageWidth, card.image_end * t);
             part.mesh.colors.emplace_back(
                 Vec3(card.shade * glm::mix(card.root_shade, 1.0f, t)), 1.0f);
         }
     }
-    append_grid(part.mesh, kRows, 2, false);
+    append_grid(part.mesh, card.rows, 2, false);
 }
 
 /// Wide cards that lie on the scalp, so that hair, not skin, is visible between locks.
@@ -117,19 +123,58 @@ void append_undercoat(HeadPart& part, const HeadShape& shape) {
     constexpr int kCards = 700;
     for (int i = 0; i < kCards; ++i) {
         Card card;
-        card.root = scalp_root(i, kCards, Vec3(0), shape);
+        card.root = to_scalp(around_skull(i, kCards), shape);
         if (scalp_hair_cover(card.root) < 0.95f) {
             continue;
         }
         card.out = glm::normalize(head_gradient(card.root, shape, 0));
         card.flow = hair_flow(card.root, card.out);
-        card.length = 2.4f;
+        const Vec3 tip = card.root + 2.4f * card.flow;
+        card.length = scalp_hair_cover(to_scalp(tip, shape)) < 0.8f ? 0.8f : 2.4f;
         card.width = 2.0f;
         card.taper = 0.3f;
         card.lift = 0.06f;
         card.strand = 0.37f * static_cast<float>(i);
         card.shade = 0.75f;
         card.root_shade = 1;
+        append_card(part, card, shape);
+    }
+}
+
+/// Single short hairs above the forehead, where cards end: thinner and fewer towards the skin, as a
+/// hairline is.
+void append_fine_hairs(HeadPart& part, const HeadShape& shape) {
+    constexpr int kHairs = 48000;  // on the whole sphere; some 100 are kept
+    Random random(0, 0, name_hash("fine_hair"), 0);
+    for (int i = 0; i < kHairs; ++i) {
+        const std::array<float, 4> chance = {
+            random.uniform(), random.uniform(), random.uniform(), random.uniform()};
+        const Vec3 near = around_skull(i, kHairs);
+        if (near.z < 0 || near.y < 7.5f || std::abs(near.y - hairline(near)) > 2) {
+            continue;
+        }
+        Card card;
+        const Vec3 root = to_scalp(near, shape);  // the same at every age
+        const float cover = scalp_hair_cover(root);
+        if (cover > 0.32f || cover < 0.02f + 0.26f * chance[0]) {
+            continue;
+        }
+        card.detail = 1;
+        card.root = to_scalp(root, shape, card.detail);
+        card.out = glm::normalize(head_gradient(card.root, shape, card.detail));
+        const Vec3 flow = hair_flow(card.root, card.out);
+        const Vec3 aside = glm::cross(card.out, flow);
+        card.flow = glm::normalize(flow + 1.1f * (chance[1] - 0.5f) * aside);
+        card.length = (0.7f + 1.2f * cover) * (0.6f + 0.8f * chance[2]);
+        card.width = 0.035f + 0.04f * cover;
+        card.taper = 0.85f;
+        card.lift = 0.06f + 0.16f * chance[3];
+        card.depth = 0.01f;
+        card.image_end = 0.45f;  // every strand of the image is that long
+        card.strand = 7.31f * chance[2] + 3.17f * chance[1];
+        card.shade = 0.9f + 0.3f * chance[3];
+        card.root_shade = 1;
+        card.rows = 2;
         append_card(part, card, shape);
     }
 }
@@ -141,7 +186,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 3900;  // on the whole sphere around the skull; some 2520 are kept
+    constexpr int kCards = 3900;  // on the whole sphere around the skull; some 2400 are kept
     HeadPart part;
     part.mesh.name = "scalp";
     append_undercoat(part, shape);
@@ -149,12 +194,13 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
     for (int i = 0; i < kCards; ++i) {
         const float aside_x = random.uniform() - 0.5f;
         const float aside_z = random.uniform() - 0.5f;
-        const Vec3 root = scalp_root(i, kCards, 0.35f * Vec3(aside_x, 0, aside_z), shape);
+        const Vec3 root =
+            to_scalp(around_skull(i, kCards) + 0.35f * Vec3(aside_x, 0, aside_z), shape);
         const float grown = random.uniform();
         const std::array<float, 4> chance = {
             random.uniform(), random.uniform(), random.uniform(), random.uniform()};
         const float cover = scalp_hair_cover(root);
-        if (cover < 0.12f + 0.5f * grown) {
+        if (cover < 0.34f + 0.45f * grown) {
             continue;
         }
         const float edge =
@@ -176,6 +222,7 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         card.root_shade = glm::mix(0.85f, 0.6f, top);
         append_card(part, card, shape);
     }
+    append_fine_hairs(part, shape);
     return part;
 }
 
