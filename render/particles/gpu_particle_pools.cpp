@@ -94,12 +94,16 @@ load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
         {.compute = "particle_update.comp", .defines = std::move(defines)});
 }
 
-/// Whether a step has only gravity and drag.
+bool is_steered(const MotionStep& motion) {
+    return motion.steering.orbit > 0 || motion.steering.loss > 0;
+}
+
+/// Whether a step has only gravity, drag and steering.
 bool is_plain(const GpuParticleStep& step) {
     const MotionStep& motion = step.motion;
-    const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
     const bool whirls = motion.vortex.around != 0 || motion.vortex.toward != 0;
-    return !motion.step.closed_form && motion.turbulence.strength == 0 && !steers && !whirls
+    const bool steers_late = is_steered(motion) && motion.step.old_weight == 1;
+    return !motion.step.closed_form && motion.turbulence.strength == 0 && !steers_late && !whirls
            && motion.forces.empty() && motion.wrap_size == Vec3(0) && step.colliders.empty();
 }
 
@@ -293,6 +297,7 @@ Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     pools.programs_[0][0].births = LIMN_TRY(load_update(device, {}));
     pools.programs_[0][0].old = LIMN_TRY(load_update(device, {{"OLD"}}));
     pools.plain_ = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
+    pools.steered_ = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}, {"STEERED"}}));
     return pools;
 }
 
@@ -385,8 +390,13 @@ void GpuParticlePools::add(
         pending.empty() ? particles.clock.born : pending.front().first;
     pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
     pool.plain.reset();
+    pool.steering.reset();
     if (pending.size() == 1 && is_plain(pending.front())) {
-        pool.plain = pending.front().motion.step;
+        const MotionStep& motion = pending.front().motion;
+        pool.plain = motion.step;
+        if (is_steered(motion)) {
+            pool.steering = motion.steering;
+        }
     }
     if (!particles.kept().empty()) {
         const ParticleStep& step = particles.kept().back().motion.step;
@@ -461,9 +471,15 @@ void GpuParticlePools::move(
             program.set("kept", step.keep);
             program.set("velocity_dt", Vec2(old_dt, step.dt - old_dt));
         }
+        if (pool.steering) {
+            program.set("steering_origin", Vec4(pool.steering->origin, pool.steering->orbit));
+            program.set("steering_axis", Vec4(pool.steering->axis, pool.steering->loss));
+        }
         device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
     };
-    const gpu::Program* const old = is_plain_step ? plain_ : programs->old;
+    const gpu::Program* const old = !is_plain_step  ? programs->old
+                                    : pool.steering ? steered_
+                                                    : plain_;
     // The slots are a ring: indices beyond its end wrap to its beginning.
     const std::uint32_t first_slot = pool.first % pool.capacity + offset_of(pool);
     const std::uint32_t room = pool.capacity - std::min(first_slot, pool.capacity);

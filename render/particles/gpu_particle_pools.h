@@ -78,7 +78,8 @@ struct GpuParticlePool {
     std::uint32_t old = 0;     ///< number of particles born before the steps to simulate
     /// The step to simulate, if it is the only one and has only gravity and drag.
     std::optional<ParticleStep> plain{};
-    float collide_depth = 0;  ///< as ParticleCollision::collide_depth
+    std::optional<Steering> steering{};  ///< if that step has it, too
+    float collide_depth = 0;             ///< as ParticleCollision::collide_depth
     GpuBalls balls{};
 };
 
@@ -170,8 +171,9 @@ class GpuParticlePools {
     /// Step by step, with the collisions of balls after each.
     void move_balls(gpu::Device& device, GpuParticlePool& pool, float back, bool has_depth);
 
-    Programs programs_[2][2]{};            ///< by whether they collide with shapes, with depth
-    const gpu::Program* plain_ = nullptr;  ///< for steps with only gravity and drag
+    Programs programs_[2][2]{};              ///< by whether they collide with shapes, with depth
+    const gpu::Program* plain_ = nullptr;    ///< for steps with only gravity and drag
+    const gpu::Program* steered_ = nullptr;  ///< and steering
     GpuShapeList shapes_{};
 
     struct BallPrograms {

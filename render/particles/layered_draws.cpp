@@ -301,11 +301,28 @@ void list_draws(
         }
     };
     const bool has_splats = can_show_splats(view);
+    const auto append_pools = [&](SpriteLayer layer, bool only_add_light) {
+        const bool is_underwater = layer == SpriteLayer::Underwater;
+        for (const auto& [entity, pool] : gpu.pools()) {
+            const bool is_in_layer = is_underwater
+                                         ? underwater.can_see()
+                                         : layer_of_pool(scene, *pool, has_splats) == layer;
+            const bool only_adds = scene.looks[pool->look][2].z == 0;
+            const SpriteDraw draw = draw_of_pool(scene, *pool, layer);
+            // Programs of splats are compiled at the warm-up, even if no particle is born yet.
+            const bool is_visible =
+                draw.count > 0 && is_group_in_view(scene.extents[pool->look], frustum);
+            if (is_in_layer && only_adds == only_add_light
+                && (is_visible || (frame.warm_up && layer == SpriteLayer::Splats))) {
+                list.draws.push_back(draw);
+            }
+        }
+    };
     for (std::size_t i = 0; i < kSpriteLayers; ++i) {
         const auto layer = static_cast<SpriteLayer>(i);
-        const bool is_underwater = layer == SpriteLayer::Underwater;
         list.begin[i] = list.draws.size();
-        if (is_underwater) {
+        append_pools(layer, true);
+        if (layer == SpriteLayer::Underwater) {
             // One layer after another, as above water: sorted together, draws would alternate
             // between images and programs.
             for (const std::vector<std::uint32_t>& indices : list.underwater) {
@@ -314,18 +331,7 @@ void list_draws(
         } else {
             append_instances(layer, list.indices[i]);
         }
-        for (const auto& [entity, pool] : gpu.pools()) {
-            const bool is_in_layer = is_underwater
-                                         ? underwater.can_see()
-                                         : layer_of_pool(scene, *pool, has_splats) == layer;
-            const SpriteDraw draw = draw_of_pool(scene, *pool, layer);
-            // Programs of splats are compiled at the warm-up, even if no particle is born yet.
-            const bool is_visible =
-                draw.count > 0 && is_group_in_view(scene.extents[pool->look], frustum);
-            if (is_in_layer && (is_visible || (frame.warm_up && layer == SpriteLayer::Splats))) {
-                list.draws.push_back(draw);
-            }
-        }
+        append_pools(layer, false);
     }
     list.begin[kSpriteLayers] = list.draws.size();
 }

@@ -20,16 +20,17 @@ struct ViewData;
 
 // The particle draws of a view, as one list: layer by layer, and within a layer from back to front.
 // Consecutive particles are one draw call if they share a program and texture arrays. Pools that
-// the GPU moves come last in their layer.
+// the GPU moves come last in their layer, but for those that only add light: they come first, so
+// that dust and smoke dim them.
 
 /// In the order in which they are drawn.
 enum class SpriteLayer : std::uint8_t {
     Underwater,  ///< visible through a water surface: drawn before the water, and again after it
     Behind,      ///< at full resolution, farther than the median of Half
     Half,        ///< at half the resolution, as one image
+    Splats,      ///< points on the GPU that only add light, by compute
     Front,       ///< at full resolution
     Weighted,    ///< blended without an order, as one image
-    Splats,      ///< points on the GPU that only add light, by compute
 };
 inline constexpr std::size_t kSpriteLayers = 6;
 

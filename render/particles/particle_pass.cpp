@@ -52,9 +52,9 @@ constexpr std::array<SpriteLayerRow, kSpriteLayers> kSpriteLayerRows = {{
     {"particles.under water", "particles.under water"},   // Underwater
     {"particles.behind", "particles.veiled behind"},      // Behind
     {"particles.half", "particles.veiled half", 0.5f},    // Half
+    {"particles.splats", "particles.splats"},             // Splats
     {"particles", "particles.veiled"},                    // Front
     {"particles.weighted", "particles.veiled weighted"},  // Weighted
-    {"particles.splats", "particles.splats"},             // Splats
 }};
 
 const SpriteLayerRow& layer_row(SpriteLayer layer) {
@@ -226,8 +226,8 @@ void ParticleEffect::add_layers_above_water(
     FrameGraph& graph, const FrameData& frame, ViewData& view, const Side& side) {
     create_layer_programs(*frame.device);
     for (const SpriteLayer layer :
-         {SpriteLayer::Behind, SpriteLayer::Half, SpriteLayer::Front, SpriteLayer::Weighted,
-          SpriteLayer::Splats}) {
+         {SpriteLayer::Behind, SpriteLayer::Half, SpriteLayer::Splats, SpriteLayer::Front,
+          SpriteLayer::Weighted}) {
         add_layer(graph, view, layer, side);
     }
 }
@@ -300,17 +300,18 @@ void ParticleEffect::add_splats(FrameGraph& graph, ViewData& view) {
     if (brightest <= 0) {
         return;
     }
-    const gpu::Program* const program = begin_particle_splats(splats, view, count, brightest);
+    const SplatPrograms of_splats = begin_particle_splats(splats, view, count, brightest);
     const Use writes[] = {graph.import("sums of particles", splats.sums)};
     graph.add_pass(
         layer_row(SpriteLayer::Splats).pass, std::span<const Use>(reads), writes,
-        [this, &view, program, draws](PassContext& context) {
+        [this, &view, of_splats, draws](PassContext& context) {
             bind_view(context, view);
             look_texels.bind(context.device(), layout::kLooksUnit);
             for (const SpriteDraw& draw : draws) {
-                if (program != nullptr && draw.count > 0) {
+                if (draw.count > 0) {
                     draw.pool->texels.bind(context.device(), layout::kParticlesUnit);
-                    draw_particle_splats(context, *program, splats, *draw.pool);
+                    draw_particle_splats(
+                        context, of_splats, splats, *draw.pool, scene.looks[draw.pool->look]);
                 }
             }
         });

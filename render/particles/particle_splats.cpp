@@ -1,5 +1,6 @@
 #include "render/particles/particle_splats.h"
 
+#include "ecs/components/particles.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/particles/gpu_particle_pools.h"
@@ -49,7 +50,23 @@ float max_light(const LookRecord& look) {
     return is_positive(brightest) ? brightest : 0;
 }
 
-const gpu::Program* begin_particle_splats(
+bool is_steady(const LookRecord& look) {
+    const Vec4 sizes = look[layout::kLookSizes];
+    bool steady = look[2].w == static_cast<float>(ParticleFacing::Point);
+    for (std::uint32_t i = layout::kLookSizes; i < layout::kLookColors; ++i) {
+        steady = steady && look[i] == Vec4(sizes.x);
+    }
+    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
+        steady = steady && look[layout::kLookColors + i] == look[layout::kLookColors];
+    }
+    const Vec4& fades = look[layout::kLookMore];
+    const Vec4& wave = look[layout::kLookMore + 2];
+    const Vec4& varied = look[layout::kLookMore + 3];
+    return steady && fades.y == 0 && fades.z == 0 && look[layout::kLookMore + 1].w == 0
+           && wave.y == 0 && wave.z == 0 && Vec3(varied.y, varied.z, varied.w) == Vec3(0);
+}
+
+SplatPrograms begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest) {
     const float largest = kLargestSum / static_cast<float>(std::max<std::size_t>(count, 1));
     splats.max_amount = std::max(std::min(kMaxSteps, largest) - 1, 1.0f);  // rounding may add one
@@ -61,18 +78,28 @@ const gpu::Program* begin_particle_splats(
         const std::vector<std::uint32_t> zeros(words);
         splats.sums = gpu::Buffer::of("sums of particles", std::span(zeros));
     }
-    return splats.splat.get({});
+    return {splats.splat.get({}), splats.splat.get(Variant("STEADY"))};
 }
 
 void draw_particle_splats(
-    PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
-    const GpuParticlePool& pool) {
+    PassContext& context, const SplatPrograms& programs, const ParticleSplats& splats,
+    const GpuParticlePool& pool, const LookRecord& look) {
+    const bool steady = is_steady(look);
+    const gpu::Program* const program = steady ? programs.steady : programs.any;
+    if (program == nullptr) {
+        return;
+    }
     gpu::Device& device = context.device();
-    device.use(program);
+    device.use(*program);
     device.bind_storage(layout::kSplatSumsBinding, splats.sums);
-    program.set("count", static_cast<int>(pool.count));
-    program.set("unit", splats.unit);
-    program.set("max_amount", splats.max_amount);
+    program->set("count", static_cast<int>(pool.count));
+    program->set("unit", splats.unit);
+    program->set("max_amount", splats.max_amount);
+    if (steady) {
+        const Vec4& color = look[layout::kLookColors];
+        program->set("size_spread", Vec2(look[0]) * look[layout::kLookSizes].x);
+        program->set("steady_color", Vec4(Vec3(color) * look[2].x, color.w));
+    }
     device.dispatch((pool.count + layout::kParticleGroup - 1) / layout::kParticleGroup);
 }
 

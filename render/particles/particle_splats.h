@@ -38,16 +38,25 @@ struct ParticleSplats {
 /// The maximum light that a point of this look adds to a pixel.
 [[nodiscard]] float max_light(const LookRecord& look);
 
+/// Whether all points of this look have the same color at any age and distance, and no size but by
+/// their spread.
+[[nodiscard]] bool is_steady(const LookRecord& look);
+
+/// Null if a program does not compile.
+struct SplatPrograms {
+    const gpu::Program* any = nullptr;
+    const gpu::Program* steady = nullptr;  ///< for looks that are
+};
+
 /// Before the splats of a view: `count` is their number, `brightest` the maximum of max_light().
-/// Null if the program does not compile.
-[[nodiscard]] const gpu::Program* begin_particle_splats(
+[[nodiscard]] SplatPrograms begin_particle_splats(
     ParticleSplats& splats, const ViewData& view, std::size_t count, float brightest);
 
-/// Draws a pool with that program. The view, its depth (kParticleDepthUnit), particles and looks
-/// must be bound.
+/// Draws a pool of this look with those programs. The view, its depth (kParticleDepthUnit),
+/// particles and looks must be bound.
 void draw_particle_splats(
-    PassContext& context, const gpu::Program& program, const ParticleSplats& splats,
-    const GpuParticlePool& pool);
+    PassContext& context, const SplatPrograms& programs, const ParticleSplats& splats,
+    const GpuParticlePool& pool, const LookRecord& look);
 
 /// Adds the pass that adds the sums to the view's radiance.
 void add_particle_sums(FrameGraph& graph, ParticleSplats& splats, ViewData& view);

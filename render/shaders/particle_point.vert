@@ -24,7 +24,7 @@ void main() {
     c.coordinates = vec3(0.0, 0.0, 1.0);
     c.book = flipbook_of(p, look.book, int(look.more.x));
     c.is_hidden = is_sprite_hidden(p, look, c);
-    gl_PointSize = max(diameter, 1.0);
+    gl_PointSize = max(diameter, kMinPoint);
     write_corner(p, look, c, index);
     if (c.is_hidden) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);

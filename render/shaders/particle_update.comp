@@ -3,6 +3,7 @@
 // of particle_collide.glsl, and, for the common cases, because a software OpenGL executes both sides of every branch,
 //   OLD    all particles were born before these steps
 //   PLAIN  with OLD: a single step with only gravity and drag
+//   STEERED  with PLAIN: and steering
 // Techniques: engine.particle-params, particle.circular-list, particle.forces, particle.gpu-init,
 //     particle.gpu-state, particle.gpu-update, particle.gpu-update-mrt, particle.million,
 //     particle.stateless-script
@@ -45,6 +46,10 @@ uniform vec4 added_dt;     // velocity that is added [m/s], step [s]
 uniform float kept;        // fraction of the velocity that is kept
 uniform vec2 velocity_dt;  // time at the old velocity and at the new one [s]
 #endif
+#ifdef STEERED
+uniform vec4 steering_origin;  // of the axis; how far directions turn into circles around it
+uniform vec4 steering_axis;    // unit; speed that is lost [m/s]
+#endif
 uniform float back;       // time of drawing before the end of the last step [s]
 
 const float kPi = 3.14159265358979;
@@ -63,10 +68,23 @@ struct Particle {
     uint look_bits;
 };
 
+// `tangent`: around the axis, of the length `radius`.
+void steer(inout Particle p, vec3 tangent, float radius, float orbit, float loss) {
+    float speed = length(p.velocity);
+    float left = max(speed - loss, 0.0);
+    orbit = radius > 0.0 ? orbit : 0.0;
+    p.velocity = (speed > 0.0 ? (1.0 - orbit) * left / speed : 0.0) * p.velocity
+                 + (radius > 0.0 ? orbit * left / radius : 0.0) * tangent;
+}
+
 #ifdef PLAIN
 
 void move(inout Particle p) {
     if (p.life > 0.0) {  // does not stick
+#ifdef STEERED
+        vec3 tangent = cross(steering_axis.xyz, p.position - steering_origin.xyz);
+        steer(p, tangent, length(tangent), steering_origin.w, steering_axis.w);
+#endif
         vec3 old = p.velocity;
         p.velocity = old * kept + added_dt.xyz;
         p.position += old * velocity_dt.x + p.velocity * velocity_dt.y;
@@ -403,11 +421,7 @@ void apply_vortex_and_steering(inout Particle p, int texel) {
         p.velocity += (origin.w * tangent - axis.w * (offset - dot(offset, axis.xyz) * axis.xyz)) / radius;
     }
     if (steering.x > 0.0 || steering.y > 0.0) {
-        float speed = length(p.velocity);
-        float orbit = radius > 0.0 ? steering.x : 0.0;
-        float left = max(speed - steering.y, 0.0);
-        p.velocity = (speed > 0.0 ? (1.0 - orbit) * left / speed : 0.0) * p.velocity
-                     + (radius > 0.0 ? orbit * left / radius : 0.0) * tangent;
+        steer(p, tangent, radius, steering.x, steering.y);
     }
 }
 

@@ -225,6 +225,36 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "gpu particles: drawn after each step, they keep to their circles as on the CPU"
+    * technique("particle.gpu-update")) {
+    ParticleEmitter emitter = fountain();
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = 200}};
+    emitter.life = 1000;
+    emitter.shape = EmitterShape::Sphere;  // not on the axis, as above
+    emitter.size = Vec3(0.5f);
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::Average, ParticleIntegrator::ExplicitEuler}) {
+        for (const float brake : {0.0f, 0.2f}) {
+            CAPTURE(brake);
+            ParticleMotion motion;
+            motion.gravity = 0.1f;
+            motion.orbit = 0.7f;
+            motion.brake = brake;
+            motion.integrator = integrator;
+            Executors both(emitter, motion);
+            for (int i = 0; i < 120; ++i) {
+                both.step(1);
+                (void)both.read();
+            }
+            const std::vector<GpuParticle> gpu = both.read();
+            REQUIRE(gpu.size() == 200);
+            CHECK(largest_distance(gpu, both.pool(), 6) < 1e-4f);
+        }
+    }
+}
+
+TEST_CASE(
     "gpu particles: force fields push them as they push the CPU's" * technique("particle.forces")) {
     ParticleEmitter emitter = fountain();
     emitter.life = 3;

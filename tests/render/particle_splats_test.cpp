@@ -118,8 +118,8 @@ TEST_CASE(
         const float aside = 0.3f;  // [px]
         scene.emit(Points::look_of(pixels, color), 1, {aside * kPixel, 0, 0});
         const gpu::FloatImage image = scene.draw_view();
-        const float radius = 0.5f * std::max(pixels, 1.0f);
-        const float faint = std::min(pixels * pixels, 1.0f);  // instead of smaller
+        const float radius = 0.5f * std::max(pixels, 2.0f);
+        const float faint = std::min(0.25f * pixels * pixels, 1.0f);  // instead of smaller
         for (int y = 0; y < kSide; ++y) {
             for (int x = 0; x < kSide; ++x) {
                 const Vec2 from = Vec2(x - kSide / 2, y - kSide / 2) - Vec2(aside, 0);
@@ -156,6 +156,74 @@ TEST_CASE(
     // may have diameters in steps of 1/8 of a pixel.
     const float bound = Points::device().caps().software ? 0.004f : 0.05f;
     CHECK(largest_difference(splats, drawn(true)) < bound);
+}
+
+TEST_CASE("particle splats: a small point is as bright wherever it is among the pixels") {
+    for (const bool rasterize : {false, true}) {
+        for (const float pixels : {0.4f, 1.0f, 1.6f}) {
+            const float mean = kPi / 3 * square(0.5f * pixels);  // of a disc of (1 - r^2)^2
+            for (const Vec2 aside :
+                 {Vec2(0, 0), Vec2(0.25f, 0.1f), Vec2(0.5f, 0), Vec2(0.5f, 0.5f)}) {
+                CAPTURE(pixels);
+                Points scene;
+                const ParticleLook look = Points::look_of(pixels, {8, 1, 1});
+                scene.emit(rasterize ? rasterized(look) : look, 1, Vec3(aside * kPixel, 0));
+                const auto sum = static_cast<float>(sum_of_red(scene.draw_view()));
+                CHECK(std::abs(sum - 8 * mean) < 0.09f * 8 * mean);
+            }
+        }
+    }
+}
+
+TEST_CASE("particle splats: dust on the CPU covers them") {
+    const auto light = [](float opacity) {
+        Points scene;
+        scene.emit(Points::look_of(5, {1, 1, 1}));
+        ParticleLook dust = Points::look_of(400, {0, 0, 0});
+        dust.facing = ParticleFacing::Camera;
+        dust.cover = 1;
+        dust.colors[0].opacity = opacity;
+        ParticlePool pool;
+        pool.x = pool.y = pool.z = pool.vx = pool.vy = pool.vz = pool.age = {0};
+        pool.life = {1000};
+        pool.look = {0};
+        pool.stuck = {};
+        scene.world.create(ParticleEmitter{}, dust, pool, WorldTransform{});
+        return sum_of_red(scene.draw_view());
+    };
+    CHECK(light(0.5f) == near(0.5 * light(0)).epsilon(0.01));
+}
+
+TEST_CASE("particle splats: a steady look gives the image of one that might change") {
+    const auto drawn = [](float fade) {
+        Points scene;
+        ParticleLook dots = Points::look_of(1.7f, {0.2f, 0.3f, 0.4f});
+        dots.size_spread = 0.5f * dots.size;
+        dots.fade = fade;  // over the last seconds of a life of a thousand
+        CHECK(is_steady(make_look_record(dots, {})) == (fade == 0));
+        scene.emit(dots, 700, {0, 0, -0.4f}, {1, 1, 1});
+        return scene.draw_view();
+    };
+    CHECK(largest_difference(drawn(0), drawn(1)) < 1e-5f);
+}
+
+TEST_CASE("particle splats: a look that changes by age, life, distance or chance is not steady") {
+    const auto steady = [](auto&& change) {
+        ParticleLook look = Points::look_of(3, {1, 1, 1});
+        change(look);
+        return is_steady(make_look_record(look, {}));
+    };
+    CHECK(steady([](ParticleLook& look) { look.size_spread = 0.1f; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.facing = ParticleFacing::Pixels; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.size_curve = {{0, 1}, {1, 2}}; }));
+    CHECK_FALSE(steady([](ParticleLook& look) {
+        look.colors.push_back({.at = 1, .color = {1, 1, 1}, .opacity = 0});
+    }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.color_spread = {0, 0.1f, 0}; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.color_function.amplitude = 0.3f; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.near_fade = 2; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.far_fade = 2; }));
+    CHECK_FALSE(steady([](ParticleLook& look) { look.fade = 2; }));
 }
 
 TEST_CASE("particle splats: what is behind something opaque adds nothing, what is before it all") {

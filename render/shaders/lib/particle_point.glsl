@@ -36,7 +36,10 @@ float point_diameter(vec3 position_ws, float size, int facing, float away) {
     return diameter;
 }
 
-// Discs smaller than a pixel are drawn fainter instead of smaller.
+// Smaller discs are drawn fainter instead of smaller. At two pixels the light of one varies by an eighth with its
+// position among the pixels; at one it would come and go, so that small points would twinkle.
+const float kMinPoint = 2.0;  // diameter [px]
+
 float point_opacity(float diameter) {
-    return min(diameter * diameter, 1.0);
+    return min(diameter * diameter / (kMinPoint * kMinPoint), 1.0);
 }
