@@ -242,14 +242,8 @@ std::vector<Vec4> pack_particle_steps(
 }
 
 void GpuShapeList::begin_frame() {
-    if (std::exchange(has_grown_, false)
-        && std::erase_if(entries_, [](const Entry& entry) { return !entry.used; }) > 0) {
-        std::uint32_t first = 0;
-        for (Entry& entry : entries_) {
-            entry.first = first;
-            first += static_cast<std::uint32_t>(entry.shape->size());
-        }
-        is_new_ = true;
+    if (std::exchange(has_grown_, false)) {
+        std::erase_if(entries_, [](const Entry& entry) { return !entry.used; });
     }
     for (Entry& entry : entries_) {
         entry.used = false;
@@ -266,26 +260,37 @@ std::uint32_t GpuShapeList::find_or_add(const GpuShape& shape) {
         found->used = true;
         return found->first;
     }
-    const std::uint32_t first =
-        entries_.empty()
-            ? 0
-            : entries_.back().first + static_cast<std::uint32_t>(entries_.back().shape->size());
-    entries_.push_back({shape, first, true});
-    is_new_ = has_grown_ = true;
+    // In the first gap that holds it.
+    std::uint32_t first = 0;
+    auto next = entries_.begin();
+    while (next != entries_.end() && next->first - first < shape->size()) {
+        first = next->first + static_cast<std::uint32_t>(next->shape->size());
+        ++next;
+    }
+    entries_.insert(next, {.shape = shape, .first = first, .used = true});
+    has_grown_ = true;
     return first;
 }
 
 void GpuShapeList::upload() {
-    if (!is_new_) {
+    if (entries_.empty()) {
         return;
     }
-    std::vector<Vec4> all;
-    for (const Entry& entry : entries_) {
-        all.insert(all.end(), entry.shape->begin(), entry.shape->end());
+    const std::uint32_t end =
+        entries_.back().first + static_cast<std::uint32_t>(entries_.back().shape->size());
+    const bool grows = end > capacity_;
+    if (grows) {
+        capacity_ = std::bit_ceil(end);
+        buffer_ = gpu::Buffer("particle shapes", capacity_ * sizeof(Vec4), gpu::BufferUse::Dynamic);
+        texels_.set(buffer_);
     }
-    buffer_ = gpu::Buffer::of("particle shapes", std::span<const Vec4>(all));
-    texels_.set(buffer_);
-    is_new_ = false;
+    for (Entry& entry : entries_) {
+        if (grows || entry.is_new) {
+            buffer_.write(entry.first * sizeof(Vec4), std::span<const Vec4>(*entry.shape));
+            uploaded_ += entry.shape->size();
+            entry.is_new = false;
+        }
+    }
 }
 
 void GpuShapeList::bind(gpu::Device& device) const {
@@ -510,12 +515,13 @@ bool GpuParticlePools::can_collide_balls(gpu::Device& device) {
     BallPrograms made = {
         .keys = load({{"KEYS"}}),
         .near = load({{"NEAR"}}),
+        .mutual = load({{"MUTUAL"}}),
         .push = {load({{"PUSH"}}), load({{"PUSH"}, {"SHAPES"}})},
         .speed = load({{"SPEED"}}),
         .apply = load({})};
-    const bool complete = made.keys != nullptr && made.near != nullptr && made.push[0] != nullptr
-                          && made.push[1] != nullptr && made.speed != nullptr
-                          && made.apply != nullptr && can_sort(device);
+    const bool complete = made.keys != nullptr && made.near != nullptr && made.mutual != nullptr
+                          && made.push[0] != nullptr && made.push[1] != nullptr
+                          && made.speed != nullptr && made.apply != nullptr && can_sort(device);
     if (complete) {
         ball_programs_ = made;
     }
@@ -572,6 +578,7 @@ void GpuParticlePools::move_balls(
         device.bind_storage(layout::kSortEntriesBinding, balls.entries);
         sort_entries(device, *sort_programs_, size);
         dispatch(*ball_programs_.near, step, pool.count);
+        dispatch(*ball_programs_.mutual, step, pool.count);
         for (int pass = 0; pass < kBallPasses; ++pass) {
             dispatch(*ball_programs_.push[pool.layout.has_shapes ? 1 : 0], step, pool.count);
         }

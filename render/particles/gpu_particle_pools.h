@@ -94,7 +94,7 @@ struct GpuParticleView {
     PreviousDepth depth{};      ///< for particles with a collide_depth
 };
 
-/// The shapes of all colliders, one after the other in a buffer.
+/// The shapes of all colliders, each at a place of its own in a buffer.
 class GpuShapeList {
   public:
     /// Before the emitters of a frame: drops shapes that the previous frame did not use, if any
@@ -102,19 +102,23 @@ class GpuShapeList {
     void begin_frame();
     /// The first texel of a shape. 0 if it is null.
     [[nodiscard]] std::uint32_t find_or_add(const GpuShape& shape);
-    /// Uploads them if any is new.
+    /// Uploads new ones; all of them if the buffer has to grow.
     void upload();
     void bind(gpu::Device& device) const;
+    /// Texels uploaded so far.
+    [[nodiscard]] std::uint64_t uploaded() const { return uploaded_; }
 
   private:
     struct Entry {
         GpuShape shape{};
         std::uint32_t first = 0;
         bool used = false;
+        bool is_new = true;  ///< not in the buffer yet
     };
-    std::vector<Entry> entries_{};
-    bool has_grown_ = false;  ///< since the beginning of the frame
-    bool is_new_ = false;     ///< not all of them are in the buffer
+    std::vector<Entry> entries_{};  ///< by their places
+    bool has_grown_ = false;        ///< since the beginning of the frame
+    std::uint64_t uploaded_ = 0;
+    std::uint32_t capacity_ = 0;  ///< of the buffer [texels]
     gpu::Buffer buffer_{};
     BufferTexture texels_ = BufferTexture("particle shapes", GL_RGBA32F);
 };
@@ -179,6 +183,7 @@ class GpuParticlePools {
     struct BallPrograms {
         const gpu::Program* keys = nullptr;
         const gpu::Program* near = nullptr;
+        const gpu::Program* mutual = nullptr;
         const gpu::Program* push[2]{};  ///< by whether some colliders are shapes
         const gpu::Program* speed = nullptr;
         const gpu::Program* apply = nullptr;

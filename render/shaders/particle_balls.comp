@@ -4,7 +4,8 @@
 // Balls are sorted by cells; a list of neighbors is made once a step. Nothing is appended and nothing depends on the
 // order of invocations. One definition:
 //   KEYS   writes an entry for each ball: its cell and index
-//   NEAR   lists the neighbors of each ball
+//   NEAR   lists the neighbors of each ball, as far as the list is long
+//   MUTUAL drops neighbors in whose full lists a ball has no place, so that pairs push each other or not at all
 //   PUSH   moves overlapping balls apart, not into colliders
 //   SPEED  gives pairs that have touched the speed at which they part
 //   APPLY  writes positions and velocities back
@@ -55,6 +56,7 @@ const float kPairRadius = 1.1;     // of the radius: pairs that pushes may bring
 const float kBallRestSpeed = 0.2;  // approach speed below which there is no rebound [m/s]
 const float kCrowd = 0.6;          // of the contacts, by which each yields less: fewer would overshoot
 const uint kFar = 0xfffffffeu, kPad = 0xffffffffu;
+const uint kDropped = 0xffffffffu;  // a neighbor
 
 struct Particle {
     vec3 position;
@@ -166,6 +168,33 @@ void main() {
     after[2u * i] = vec4(center, touching);
     after[2u * i + 1u] = before[2u * i + 1u];
 }
+#elif defined(MUTUAL)
+bool is_listed(uint i, uint other) {
+    for (uint n = 0u; n < kMaxNear; ++n) {
+        if (near[kNearWords * other + 2u + n] == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// No ball looks for itself where it is dropped, since it is not in the list of one that drops it.
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) {
+        return;
+    }
+    vec4 own = before[2u * i];
+    for (uint n = 0u; n < near[kNearWords * i]; ++n) {
+        uint other = near[kNearWords * i + 2u + n];
+        if (near[kNearWords * other] == kMaxNear && !is_listed(i, other)) {
+            near[kNearWords * i + 2u + n] = kDropped;
+            own.w -= distance(before[2u * other].xyz, own.xyz) < 2.0 * radius ? 1.0 : 0.0;
+        }
+    }
+    after[2u * i] = own;
+    after[2u * i + 1u] = before[2u * i + 1u];
+}
 #elif defined(PUSH)
 #include "particle_collide.glsl"
 
@@ -182,6 +211,9 @@ void main() {
     uint neighbors = near[kNearWords * i];
     for (uint n = 0u; n < neighbors; ++n) {
         uint other = near[kNearWords * i + 2u + n];
+        if (other == kDropped) {
+            continue;
+        }
         vec4 there = before[2u * other];
         float overlap = 2.0 * radius - distance(own.xyz, there.xyz);
         if (overlap > 0.0) {

@@ -195,6 +195,13 @@ std::vector<GpuCollider> find_gpu_colliders(const ParticleObstacles& obstacles, 
 }
 
 void limit_shape_memory(std::size_t bytes, std::vector<GpuParticleStep>& steps) {
+    const auto shape_of = [](const GpuCollider& collider) { return collider.shape; };
+    const std::size_t count = steps.size();
+    if (count > 1
+        && std::ranges::equal(
+            steps[count - 1].colliders, steps[count - 2].colliders, {}, shape_of, shape_of)) {
+        return;  // nothing was added
+    }
     std::size_t used = 0;
     for (std::size_t i = steps.size(); i-- > 0;) {
         std::vector<GpuCollider>& colliders = steps[i].colliders;

@@ -304,4 +304,37 @@ TEST_CASE("gpu shapes: their memory is limited, at the cost of the oldest steps"
     CHECK(steps[7].colliders[1].shape != steps[6].colliders[1].shape);
 }
 
+TEST_CASE("gpu shapes: a new one is uploaded alone, where there is room for it") {
+    const Scene scene;  // with a device
+    const auto shape = [](std::size_t texels) {
+        return std::make_shared<const std::vector<Vec4>>(texels);
+    };
+    const GpuShape a = shape(100);
+    const GpuShape b = shape(50);
+    const GpuShape c = shape(50);
+    const GpuShape small = shape(40);
+    GpuShapeList list;
+    const auto show = [&](const std::vector<GpuShape>& shapes) {
+        std::vector<std::uint32_t> places;
+        list.begin_frame();
+        for (const GpuShape& one : shapes) {
+            places.push_back(list.find_or_add(one));
+        }
+        list.upload();
+        return places;
+    };
+    using Places = std::vector<std::uint32_t>;
+    CHECK(show({a, b}) == Places{0, 100});
+    CHECK(list.uploaded() == 150);
+    CHECK(show({a, b}) == Places{0, 100});
+    CHECK(list.uploaded() == 150);
+    CHECK(show({a, c}) == Places{0, 150});
+    CHECK(list.uploaded() == 200);
+    CHECK(show({a, c}) == Places{0, 150});  // b is gone
+    CHECK(show({a, c, small}) == Places{0, 150, 100});
+    CHECK(list.uploaded() == 240);
+    CHECK(show({a, c, shape(500)}) == Places{0, 150, 200});  // the buffer grows
+    CHECK(list.uploaded() == 240 + 100 + 50 + 40 + 500);
+}
+
 }  // namespace limn::test::gpu_shapes_test
