@@ -29,6 +29,7 @@ struct Caustics {
     std::int32_t shaft_steps = 0;
     float mirror_reach = 0;
     std::int32_t mirror_resolution = 256;
+    std::int32_t wires = 0;
 };
 
 LIMN_FIELDS(Caustics) {
@@ -48,6 +49,11 @@ LIMN_FIELDS(Caustics) {
     LIMN_FIELD(
         mirror_resolution, "side length of the map of reflected light in texels, a power of two",
         "", 32, 1024);
+    LIMN_FIELD(
+        wires,
+        "to look at the method: every n-th line of the grid of rays is drawn where they land; 0: "
+        "none",
+        "", 0, 64);
 }
 
 }  // namespace limn

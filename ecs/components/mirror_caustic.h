@@ -19,6 +19,7 @@ struct MirrorCaustic {
     float surface_exponent = 3;
     float max_distance = 1000;
     float max_height = 1e6f;
+    float wires = 0;
 };
 
 LIMN_FIELDS(MirrorCaustic) {
@@ -38,6 +39,12 @@ LIMN_FIELDS(MirrorCaustic) {
     LIMN_FIELD(
         max_height, .doc = "surfaces higher above the plane contribute no light", .unit = "m",
         .min = 0, .max = 1e6, .renamed = "highest");
+    LIMN_FIELD(
+        wires,
+        .doc =
+            "to look at the method: radiance of the edges of the moved mesh, drawn over its light; "
+            "0: none",
+        .min = 0, .max = 1000);
 }
 
 }  // namespace limn

@@ -20,13 +20,13 @@ namespace {
 bool is_finite_mirror(const MirrorCaustic& m) {
     const float sum = m.normal.x + m.normal.y + m.normal.z + m.offset + m.color.x + m.color.y
                       + m.color.z + m.strength + m.plane_exponent + m.surface_exponent
-                      + m.max_distance + m.max_height;
+                      + m.max_distance + m.max_height + m.wires;
     return std::isfinite(sum) && glm::length(m.normal) > 1e-6f;
 }
 
 void draw_mirror(
     gpu::Device& device, const gpu::Program& program, const ViewData& view,
-    const CausticMirror& mirror) {
+    const CausticMirror& mirror, bool wires) {
     const std::vector<MeshRange>& meshes = view.frame->meshes->meshes();
     if (mirror.mesh >= meshes.size()) {
         return;
@@ -42,7 +42,8 @@ void draw_mirror(
     program.set("light", Vec4(Vec3(light.position), lights.directional > 0 ? 0.0f : 1.0f));
     program.set("plane", Vec4(m.normal, m.offset) / length);
     program.set("look", Vec4(m.plane_exponent, m.surface_exponent, m.max_distance, m.max_height));
-    program.set("color", m.strength * m.color * Vec3(light.color));
+    program.set("color", wires ? Vec3(m.wires) : m.strength * m.color * Vec3(light.color));
+    program.set("even", wires ? 1.0f : 0.0f);
     device.draw_indexed(
         GL_TRIANGLES, static_cast<int>(mesh.index_count), GL_UNSIGNED_INT,
         mesh.first_index * sizeof(std::uint32_t), mesh.base_vertex);
@@ -84,12 +85,20 @@ void MirrorCausticEffect::draw(FrameGraph& graph, const FrameData&, ViewData& vi
     graph.add_pass(
         "mirror caustics", {depth_tested(view.gbuffer.depth)}, {view.radiance},
         [this, &view](PassContext& context) {
-            context.device().use(gpu::Pipeline{
-                program, {.depth = {.write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
             bind_view(context, view);
             context.device().bind_vertex_array(view.frame->meshes->streams().vertices());
-            for (const CausticMirror& mirror : mirrors) {
-                draw_mirror(context.device(), *program, view, mirror);
+            for (const bool wires : {false, true}) {
+                context.device().use(gpu::Pipeline{
+                    program,
+                    {.depth = {.write = false},
+                     .blend = gpu::kBlendAdd,
+                     .cull = GL_NONE,
+                     .wireframe = wires}});
+                for (const CausticMirror& mirror : mirrors) {
+                    if (!wires || mirror.settings.wires > 0) {
+                        draw_mirror(context.device(), *program, view, mirror, wires);
+                    }
+                }
             }
         });
 }

@@ -49,13 +49,14 @@ struct CausticRecord {
     vec4 grid;     // cells along a side; texels along a side; width of the rim of undisturbed rays [m]; kind, see below
     vec4 pool;     // half extents [m]; minimum height and 1 / (maximum - minimum) [m, 1/m]
     vec4 target;   // first texel in the atlas along both; first ray; Caustics::strength
+    vec4 wires;    // Caustics::wires; 0; 0; 0
 };
 
 const uint kHeaderTexels = 3u;
 const uint kUnderwaterTexels = 5u;
 const uint kMirrorTexels = 3u;
 const uint kCausticTileTexels = 3u;
-const uint kCausticTexels = 8u;
+const uint kCausticTexels = 9u;
 
 const float kCausticsSimulated = 0.0;  // CausticMethod
 const float kCausticsPool = 1.0;

@@ -20,6 +20,7 @@ const float kMaxRays = 48.0;          // rays along a side of a cell
 const float kPerTexel = 2.0;          // rays along a texel
 const float kMaxRaysMirrored = 12.0;  // waves spread reflected light so far that many cells overlap
 const float kMirroredPerTexel = 1.0;
+const float kWireLight = 4.0;         // of wires, relative to that under flat water
 
 int rays_along(vec2 one, vec2 other, bool mirrored) {
     vec2 longest = max(abs(one), abs(other));
@@ -30,6 +31,27 @@ int rays_along(vec2 one, vec2 other, bool mirrored) {
 void add(ivec2 first, ivec2 texel, int side, float amount) {
     if (texel.x >= 0 && texel.y >= 0 && texel.x < side && texel.y < side) {
         atomicAdd(light[(first.y + texel.y) * width + first.x + texel.x], uint(amount + 0.5));
+    }
+}
+
+// To the nearest four texels.
+void splat(ivec2 first, int side, vec2 position, float amount) {
+    vec2 at = clamp(position, vec2(-8.0), vec2(float(side) + 8.0)) - 0.5;
+    ivec2 texel = ivec2(floor(at));
+    vec2 weight = at - vec2(texel);
+    add(first, texel, side, amount * (1.0 - weight.x) * (1.0 - weight.y));
+    add(first, texel + ivec2(1, 0), side, amount * weight.x * (1.0 - weight.y));
+    add(first, texel + ivec2(0, 1), side, amount * (1.0 - weight.x) * weight.y);
+    add(first, texel + ivec2(1, 1), side, amount * weight.x * weight.y);
+}
+
+// A line about a texel wide.
+void add_wire(ivec2 first, int side, vec2 a, vec2 b) {
+    float length_ = distance(a, b);
+    int points = int(clamp(ceil(kPerTexel * length_), 1.0, kMaxRays));
+    for (int i = 0; i < points; ++i) {
+        float amount = kFixedPointOne * kWireLight * min(length_, kMaxRays) / float(points);
+        splat(first, side, mix(a, b, (float(i) + 0.5) / float(points)), amount);
     }
 }
 
@@ -66,14 +88,14 @@ void main() {
         vec3 right = mix(b.xyz, d.xyz, v);
         for (int i = 0; i < columns; ++i) {
             vec3 ray = mix(left, right, (float(i) + 0.5) / float(columns));
-            vec2 at = clamp(ray.xy, vec2(-8.0), vec2(float(side) + 8.0)) - 0.5;
-            ivec2 texel = ivec2(floor(at));
-            vec2 weight = at - vec2(texel);
-            float amount = whole * ray.z;
-            add(first, texel, side, amount * (1.0 - weight.x) * (1.0 - weight.y));
-            add(first, texel + ivec2(1, 0), side, amount * weight.x * (1.0 - weight.y));
-            add(first, texel + ivec2(0, 1), side, amount * (1.0 - weight.x) * weight.y);
-            add(first, texel + ivec2(1, 1), side, amount * weight.x * weight.y);
+            splat(first, side, ray.xy, whole * ray.z);
         }
+    }
+    int wires = int(record.wires.x);
+    if (wires > 0 && cell.y % wires == 0) {
+        add_wire(first, side, a.xy, b.xy);
+    }
+    if (wires > 0 && cell.x % wires == 0) {
+        add_wire(first, side, a.xy, c.xy);
     }
 }

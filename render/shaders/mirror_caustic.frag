@@ -2,6 +2,7 @@
 #version 450
 
 uniform vec3 color;
+uniform float even;  // 1: of an even color, for wires
 
 layout(location = 0) in float lit;
 layout(location = 1) in float dark;
@@ -9,5 +10,5 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     // A triangle with a vertex that faces away would spread across the plane.
-    radiance = vec4(dark > 0.0 ? vec3(0.0) : color * lit, 0.0);
+    radiance = vec4(dark > 0.0 ? vec3(0.0) : color * mix(lit, 1.0, even), 0.0);
 }

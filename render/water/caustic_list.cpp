@@ -210,7 +210,8 @@ void add_map(
          .pool =
              {body.shape.y > 0 ? body.shape.y : 1e6f, body.shape.z > 0 ? body.shape.z : 1e6f,
               heights.x, 1 / std::max(heights.y - heights.x, 1e-4f)},
-         .target = {0, 0, 0, source.caustics.strength}});
+         .target = {0, 0, 0, source.caustics.strength},
+         .wires = Vec4(static_cast<float>(source.caustics.wires), 0, 0, 0)});
     shadows.push_back(
         {source.waters.entities[source.body], static_cast<std::uint64_t>(part),
          make_water_view(frame_of(body), window, slant, above ? -depth_range : depth_range, side)});

@@ -4,6 +4,7 @@
 #include "ecs/base/jobs.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ constexpr float kMaxRays = 48;               ///< maximum rays along a side of a
 constexpr float kRaysPerTexel = 2;           ///< rays along a texel
 constexpr float kMaxRaysMirrored = 12;       ///< the same above the water
 constexpr float kRaysPerTexelMirrored = 1;
+constexpr float kWireLight = 4;  ///< of wires, relative to that under flat water
 constexpr int kSplatBorder = 8;  ///< texels around a map for rays that land outside
 
 /// A map with a border, so that rays need no bounds test.
@@ -96,6 +98,22 @@ void add_cell(
     }
 }
 
+/// A line about a texel wide.
+void add_wire(const Sheet& sheet, const Vec4& a, const Vec4& b) {
+    const float length = glm::distance(Vec2(a), Vec2(b));
+    if (!std::isfinite(length)) {
+        return;
+    }
+    const int points =
+        static_cast<int>(std::clamp(std::ceil(kRaysPerTexel * length), 1.0f, kMaxRays));
+    const float amount =
+        kFixedPointOne * kWireLight * std::min(length, kMaxRays) / static_cast<float>(points);
+    for (int i = 0; i < points; ++i) {
+        const float at = (static_cast<float>(i) + 0.5f) / static_cast<float>(points);
+        add(sheet, glm::mix(a.x, b.x, at), glm::mix(a.y, b.y, at), amount);
+    }
+}
+
 /// A range of rows of a map's ray grid, and the buffer of its sums.
 struct Stripe {
     std::size_t map = 0;
@@ -123,6 +141,7 @@ void sum_stripe(
     const Sheet sheet = {texels, stride, static_cast<float>(stride) - 1.01f};
     std::fill_n(texels, sheet_size(record), 0u);
     const bool mirrored = record.grid.w == layout::kCausticsMirrored;
+    const int wires = static_cast<int>(record.wires.x);
     const Cut cut = {
         record.grid.y / record.grid.x, record.grid.w == layout::kCausticsPool,
         mirrored ? kRaysPerTexelMirrored : kRaysPerTexel, mirrored ? kMaxRaysMirrored : kMaxRays};
@@ -131,6 +150,12 @@ void sum_stripe(
         const Vec4* const next = row + cells + 1;
         for (int x = 0; x < cells; ++x) {
             add_cell(sheet, row[x], row[x + 1], next[x], next[x + 1], cut);
+            if (wires > 0 && z % wires == 0) {
+                add_wire(sheet, row[x], row[x + 1]);
+            }
+            if (wires > 0 && x % wires == 0) {
+                add_wire(sheet, row[x], next[x]);
+            }
         }
     }
 }

@@ -395,6 +395,7 @@ TEST_CASE_FIXTURE(
     constexpr int kSide = 32;
     layout::CausticRecord record{};
     record.grid = {kCells, kSide, 0, 0};
+    record.wires.x = 3;
     constexpr int kWidth = 64;
     record.target = {kSide, 0, 0, 1};
     std::vector<Vec4> rays;
@@ -440,6 +441,77 @@ TEST_CASE_FIXTURE(
     for (std::size_t i = 0; i < found.size(); ++i) {
         CHECK(static_cast<float>(found[i]) / 524288 == test::near(expected[i]).epsilon(2e-3));
     }
+}
+
+TEST_CASE("caustics: wires are lines of light from ray to ray, every n-th of the grid") {
+    constexpr int kCells = 16;
+    constexpr int kSide = 64;
+    layout::CausticRecord record{};
+    record.grid = {kCells, kSide, 0, 0};
+    record.target = {0, 0, 0, 1};
+    std::vector<Vec4> rays;
+    for (int z = 0; z <= kCells; ++z) {
+        for (int x = 0; x <= kCells; ++x) {  // moved aside by half a texel
+            rays.emplace_back(Vec4(4 * x, 4 * z, 0, 0) + Vec4(0.5f, 0.5f, 0, 0));
+        }
+    }
+    const auto summed = [&](float wires) {
+        record.wires.x = wires;
+        CausticSums sums;
+        std::vector<float> atlas(kSide * kSide);
+        splat_caustics(std::span(&record, 1), rays, kSide, sums, atlas);
+        return atlas;
+    };
+    const std::vector<float> none = summed(0);
+    CHECK(std::all_of(none.begin(), none.end(), [](float x) { return x == 0; }));
+    const std::vector<float> light = summed(4);
+    for (int z = 1; z < kSide - 1; ++z) {
+        for (int x = 1; x < kSide - 1; ++x) {
+            const bool on_row = z % 16 == 0;
+            const bool on_column = x % 16 == 0;
+            if (on_row != on_column) {
+                CHECK(light[z * kSide + x] == test::near(4).epsilon(0.3));
+            } else if (!on_row && std::min(z % 16, x % 16) > 1 && std::max(z % 16, x % 16) < 15) {
+                CHECK(light[z * kSide + x] == 0);
+            }
+        }
+    }
+    double sum = 0;
+    for (const float x : light) {
+        sum += static_cast<double>(x);
+    }
+    // Four lines each way of 64 texels, less the half texel that is beyond the border.
+    CHECK(sum == test::near(4 * 2 * 4 * 63.5).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(
+    Pool, "caustics: wires show where a mirror's vertices are moved to"
+              * technique("caustic.reflection-plane")) {
+    const float floor_height = -kDepth;
+    const Entity mirror = place(
+        add(make_square()), add(Material{.shading = ShadingModel::Unlit, .base_color = Vec4(0)}),
+        affine_from(
+            {1, floor_height + 1, 0}, glm::angleAxis(radians(-90), Vec3(0, 1, 0)), Vec3(0.2f)));
+    sun(glm::normalize(Vec3(-1, 1, 0)));
+    const RenderView view = from_below({0, floor_height + 0.5f, 0});
+    world.add(mirror, MirrorCaustic{.offset = floor_height});
+    const gpu::FloatImage without = radiance(view);
+    world.get<MirrorCaustic>(mirror).wires = 5;
+    const gpu::FloatImage with = radiance(view);
+    // The square lands as one of a side of 0.4 m about the origin, 48 px a 0.5 m.
+    int edges = 0;
+    for (int j = 0; j < with.height; ++j) {
+        for (int i = 0; i < with.width; ++i) {
+            const float added = with.at(i, j, 0) - without.at(i, j, 0);
+            const Vec2 from = glm::abs(Vec2(i - 48, j - 48)) * (0.5f / 48);
+            const float apart = std::abs(std::max(from.x, from.y) - 0.2f);
+            const float diagonal = std::abs(from.x - from.y);
+            CHECK((added == 0 || std::abs(added - 5) < 0.01f || added > 9));
+            CHECK((added == 0 || apart < 0.03f || diagonal < 0.03f));
+            edges += added > 0 && apart < 0.03f ? 1 : 0;
+        }
+    }
+    CHECK(edges > 100);
 }
 
 TEST_CASE_FIXTURE(

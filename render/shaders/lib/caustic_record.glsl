@@ -17,7 +17,8 @@ CausticRecord caustic_record(int map) {
         texelFetch(caustics, first + 4),
         texelFetch(caustics, first + 5),
         texelFetch(caustics, first + 6),
-        texelFetch(caustics, first + 7));
+        texelFetch(caustics, first + 7),
+        texelFetch(caustics, first + 8));
 }
 
 // Map of this invocation, and index of its ray within the map.
