@@ -1,5 +1,6 @@
 #include "render/particles/particle_scene.h"
 
+#include "ecs/base/gravity.h"
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particle_balls.h"
@@ -160,8 +161,8 @@ std::uint32_t add_look(
 /// Records the acceleration that bends the paths of an emitter's particles, without gusts.
 void add_pull(const World& world, Entity emitter, std::uint32_t look, ParticleScene& scene) {
     if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
-        constexpr float kGravity = 9.81f;  // [m/s^2]
-        const Vec3 at_rest = Vec3(0, -kGravity * motion->gravity, 0) + motion->drag * motion->wind;
+        const Vec3 at_rest = Vec3(0, -static_cast<float>(kGravity) * motion->gravity, 0)
+                             + motion->drag * motion->wind;
         scene.looks[look][layout::kLookMotion + 1] = Vec4(at_rest, motion->drag);
     }
 }

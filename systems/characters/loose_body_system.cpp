@@ -1,5 +1,6 @@
 #include "systems/characters/loose_body_system.h"
 
+#include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "systems/characters/ground_ride.h"
 
@@ -11,11 +12,11 @@
 namespace limn {
 namespace {
 
-constexpr float kFallAcceleration = 9.81f;  // [m/s^2]
-constexpr float kLooseTopSpeed = 60.0f;     // [m/s]
-constexpr float kLooseRestSpeed = 0.3f;     // towards a surface, below which nothing bounces [m/s]
-constexpr float kRollingShare = 0.03f;      // of the friction, while it rolls
-constexpr float kLooseWaterDrag = 2.0f;     // [1/s]
+constexpr auto kFallAcceleration = static_cast<float>(kGravity);  // [m/s^2]
+constexpr float kLooseTopSpeed = 60.0f;                           // [m/s]
+constexpr float kLooseRestSpeed = 0.3f;  // towards a surface, below which nothing bounces [m/s]
+constexpr float kRollingShare = 0.03f;   // of the friction, while it rolls
+constexpr float kLooseWaterDrag = 2.0f;  // [1/s]
 constexpr int kMaxLooseParts = 64;
 constexpr float kGraspTime = 0.18f;  // until hands are at what they pick up [s]
 constexpr float kLiftTime = 0.35f;   // in which they lift it then [s]

@@ -1,5 +1,6 @@
 #include "systems/characters/motor_system.h"
 
+#include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/placement.h"
 #include "systems/animation/ik/placements.h"
@@ -12,7 +13,7 @@
 namespace limn {
 namespace {
 
-constexpr float kMotorGravity = 9.81f;
+constexpr auto kMotorGravity = static_cast<float>(kGravity);
 constexpr float kMotorTopSpeed = 50.0f;  // of a fall [m/s]
 constexpr float kCoyote = 0.12f;         // how long after leaving an edge it may still jump [s]
 constexpr float kSnapShare = 0.9f;       // of a step: how far down it follows the ground

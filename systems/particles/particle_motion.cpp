@@ -1,5 +1,6 @@
 #include "systems/particles/particle_motion.h"
 
+#include "ecs/base/gravity.h"
 #include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
 
@@ -14,7 +15,6 @@
 namespace limn {
 namespace {
 
-constexpr float kGravity = 9.81f;            // [m/s^2]
 constexpr float kOrbitRate = 60.0f;          // steps per second for which `orbit` is defined [1/s]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
@@ -43,7 +43,7 @@ MotionStep find_motion(
         found.force_scale = motion.fields;
     }
     found.step = {
-        .gravity = {0, -kGravity * motion.gravity, 0},
+        .gravity = {0, -static_cast<float>(kGravity) * motion.gravity, 0},
         .air = motion.wind + motion.weather * weather,
         .keep = std::exp(-std::max(motion.drag, 0.0f) * dt),
         .dt = dt,

@@ -1,5 +1,6 @@
 #include "systems/particles/point_mass_system.h"
 
+#include "ecs/base/gravity.h"
 #include "systems/particles/force_fields.h"
 #include "systems/particles/particle_motion.h"
 
@@ -16,7 +17,7 @@
 namespace limn {
 namespace {
 
-constexpr float kPointGravity = 9.81f;  // [m/s^2]
+constexpr auto kPointGravity = static_cast<float>(kGravity);  // [m/s^2]
 constexpr float kMinPointSpeed = 0.5f;  // below which a body keeps its aim [m/s]
 
 float positive_or_zero(float value) {

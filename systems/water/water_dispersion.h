@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/base/gravity.h"
+
 #include <cmath>
 #include <limits>
 
@@ -14,8 +16,6 @@ namespace limn {
 // the speed sqrt(g h). No surface tension: ripples shorter than 2 cm are too slow. On land (h <= 0)
 // frequency and speeds are 0, and the wave number is infinite.
 // Techniques: water.shallow-refraction, water.travelling-wave
-
-inline constexpr double kGravity = 9.81;  ///< [m/s^2]
 
 /// omega for k >= 0 [rad/s]. The depth may be infinite.
 [[nodiscard]] inline double wave_frequency(double k, double depth) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/gravity.h"
 #include "systems/animation/ragdoll/closest_points.h"
 #include "systems/animation/ragdoll/ragdoll_rig.h"
 
@@ -77,7 +78,7 @@ struct RagdollContact {
 };
 
 struct RagdollOptions {
-    RigidVec gravity = RigidVec(0, -9.81, 0);  ///< [m/s^2]
+    RigidVec gravity = RigidVec(0, -kGravity, 0);  ///< [m/s^2]
     double friction = 0.6;
     double bounce = 0;
     double damping = 0;              ///< of joints [1/s]

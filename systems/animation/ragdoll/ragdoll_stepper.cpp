@@ -1,5 +1,6 @@
 #include "systems/animation/ragdoll/ragdoll_stepper.h"
 
+#include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/ik/placements.h"
@@ -20,13 +21,12 @@
 namespace limn {
 namespace {
 
-constexpr double kRagdollGravity = 9.81;  // [m/s^2]
-constexpr float kSleepSpeed = 0.06f;      // below which a body hardly moves [m/s]
-constexpr float kSleepArm = 0.1f;         // at which its spin counts [m]
-constexpr float kSleepTime = 0.5f;        // [s]
-constexpr double kTouchMargin = 0.005;    // within which a capsule touches [m]
-constexpr double kMaxStartSpeed = 50;     // taken over from the animation [m/s], [rad/s]
-constexpr double kMuscleRate = 25;        // natural frequency at half stiffness [rad/s]
+constexpr float kSleepSpeed = 0.06f;    // below which a body hardly moves [m/s]
+constexpr float kSleepArm = 0.1f;       // at which its spin counts [m]
+constexpr float kSleepTime = 0.5f;      // [s]
+constexpr double kTouchMargin = 0.005;  // within which a capsule touches [m]
+constexpr double kMaxStartSpeed = 50;   // taken over from the animation [m/s], [rad/s]
+constexpr double kMuscleRate = 25;      // natural frequency at half stiffness [rad/s]
 
 RigidQuat to_rigid(const Quat& q) {
     return glm::normalize(RigidQuat(q));
@@ -322,7 +322,7 @@ class RagdollStepper {
         const float sunk = std::min(around->depth / static_cast<float>(2 * half), 1.0f);
         const float drag = sunk * std::max(finite_or(ragdoll_.water_drag, 0), 0.0f);
         body.spin /= 1 + static_cast<double>(drag) * stage_.dt;
-        const float gravity = static_cast<float>(kRagdollGravity) * finite_or(ragdoll_.gravity, 1);
+        const float gravity = static_cast<float>(kGravity) * finite_or(ragdoll_.gravity, 1);
         return Vec3(0, sunk * density * gravity, 0)
                - drag / (1 + drag * static_cast<float>(stage_.dt))
                      * (Vec3(body.velocity) - around->surface.velocity);
@@ -381,7 +381,7 @@ class RagdollStepper {
         }
         RagdollOptions options;
         options.gravity =
-            RigidVec(0, -kRagdollGravity * static_cast<double>(finite_or(ragdoll_.gravity, 1)), 0);
+            RigidVec(0, -kGravity * static_cast<double>(finite_or(ragdoll_.gravity, 1)), 0);
         options.friction = static_cast<double>(std::max(finite_or(ragdoll_.friction, 0), 0.0f));
         options.bounce = static_cast<double>(std::clamp(finite_or(ragdoll_.bounce, 0), 0.0f, 1.0f));
         options.damping = static_cast<double>(std::max(finite_or(ragdoll_.damping, 0), 0.0f));

@@ -1,5 +1,6 @@
 #include "systems/animation/walk/apply_motor_pose.h"
 
+#include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "systems/animation/ik/joint_tree.h"
 #include "systems/animation/ik/pose_ik.h"
@@ -31,18 +32,18 @@ constexpr float kStretchRate = 22.0f;    // of the hips after a take-off [1/s]
 constexpr float kFastAir = 4.0f;         // speed at which strides in the air are widest [m/s]
 constexpr float kLandTime = 0.36f;       // before a landing, when legs stretch for the ground [s]
 constexpr float kLandRate = 12.0f;       // at which they do [1/s]
-constexpr float kFallGravity = 9.81f;    // [m/s^2]
-constexpr float kWadeAt = 0.2f;          // depth relative to the height at which it wades
-constexpr float kWadeFull = 0.55f;       // depth at which it does so fully
-constexpr float kCruiseSpeed = 0.6f;     // at which it lies in the water [m/s]
-constexpr float kHipsBelow = 0.34f;      // depth of its hips then [leg lengths]
-constexpr float kDive = 1.2f;            // by which it lies [rad]
-constexpr float kArch = 0.3f;            // of its back in a stroke [rad],
-constexpr float kHeadBack = 0.3f;        // and of its neck: it looks ahead
-constexpr float kPull = 0.4f;            // of a stroke, until arms have pulled
-constexpr float kRecover = 0.6f;         // and until hands and feet are drawn up
-constexpr float kRunStep = 0.36f;        // duration of a step of a run, of sqrt(leg / 1 m) [s]
-constexpr float kPalm = 0.05f;           // from the wrist to what hands hold [m]
+constexpr auto kFallGravity = static_cast<float>(kGravity);  // [m/s^2]
+constexpr float kWadeAt = 0.2f;       // depth relative to the height at which it wades
+constexpr float kWadeFull = 0.55f;    // depth at which it does so fully
+constexpr float kCruiseSpeed = 0.6f;  // at which it lies in the water [m/s]
+constexpr float kHipsBelow = 0.34f;   // depth of its hips then [leg lengths]
+constexpr float kDive = 1.2f;         // by which it lies [rad]
+constexpr float kArch = 0.3f;         // of its back in a stroke [rad],
+constexpr float kHeadBack = 0.3f;     // and of its neck: it looks ahead
+constexpr float kPull = 0.4f;         // of a stroke, until arms have pulled
+constexpr float kRecover = 0.6f;      // and until hands and feet are drawn up
+constexpr float kRunStep = 0.36f;     // duration of a step of a run, of sqrt(leg / 1 m) [s]
+constexpr float kPalm = 0.05f;        // from the wrist to what hands hold [m]
 
 float smooth01(float t) {
     const float s = std::clamp(t, 0.0f, 1.0f);

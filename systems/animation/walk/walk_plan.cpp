@@ -1,6 +1,7 @@
 #include "systems/animation/walk/walk_plan.h"
 
 #include "ecs/base/foot_flight.h"
+#include "ecs/base/gravity.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,10 +14,10 @@
 namespace limn {
 namespace {
 
-constexpr float kGravityPull = 9.81f;     // [m/s^2]
-constexpr float kMaxFroude = 0.55f;       // v^2 / (g leg) of the fastest walk
-constexpr float kNaturalStride = 1.6f;    // [leg lengths]
-constexpr float kLongestStride = 1.9f;    // [leg lengths]
+constexpr auto kGravityPull = static_cast<float>(kGravity);  // [m/s^2]
+constexpr float kMaxFroude = 0.55f;                          // v^2 / (g leg) of the fastest walk
+constexpr float kNaturalStride = 1.6f;                       // [leg lengths]
+constexpr float kLongestStride = 1.9f;                       // [leg lengths]
 constexpr float kSlowestCycle = 1.4f;     // relative to that at the comfortable speed
 constexpr float kSidewaysStretch = 0.4f;  // of strides
 constexpr float kBackwardStretch = 0.65f;
