@@ -3,6 +3,8 @@
 #include "systems/water/water_spray_drops.h"
 #include "systems/water/water_touch.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +18,20 @@ namespace {
 
 constexpr float kSprayReach =
     3.0f;  ///< largest height of the surface above or below an obstacle [m]
+
+/// The surge of a surface where it was last measured.
+struct MeasuredSurge {
+    Vec2 around = {0, 0};  ///< in world space [m]
+    float speed = -1;      ///< [m/s]; < 0: not measured yet
+};
+constexpr float kSurgeReach = 25.0f;  ///< within which it counts for other bodies [m]
+
+float surge_at(const WaterSurface& surface, const Vec2& point, MeasuredSurge& last) {
+    if (!(last.speed >= 0 && glm::distance(point, last.around) < kSurgeReach)) {
+        last = {point, surge_speed(surface, point)};
+    }
+    return last.speed;
+}
 
 Affine centered_at(const Affine& world, const Vec3& offset) {
     return world * affine_from(offset, Quat(1, 0, 0, 0), Vec3(1));
@@ -77,7 +93,7 @@ void update_spray(
             spray_breakers(surface, source, time->step, random, drops->drops);
         }
     }
-    std::vector<float> crest_speeds(surfaces.size(), -1.0f);  // once for all bodies
+    std::vector<MeasuredSurge> surges(surfaces.size());
     obstacles.each([&](Entity entity, const SprayObstacle& obstacle,
                        const WorldTransform& transform, const PreviousWorldTransform* previous,
                        const WaterTouch* touch, const TouchParts* parts,
@@ -92,10 +108,8 @@ void update_spray(
         part.rate /= static_cast<float>(std::max<std::size_t>(bodies.size(), 1));
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             const WaterSurface& surface = surfaces[i];
-            if (!bodies.empty() && !(crest_speeds[i] >= 0)) {
-                crest_speeds[i] = surge_speed(surface, {point.x, point.z});
-            }
-            const float crest_speed = crest_speeds[i];
+            const float crest_speed =
+                bodies.empty() ? 0.0f : surge_at(surface, {point.x, point.z}, surges[i]);
             for (const SprayBody& body : bodies) {
                 spray_body(surface, part, body, crest_speed, time->step, random, drops.drops);
             }

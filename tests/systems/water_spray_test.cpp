@@ -1,4 +1,5 @@
 #include "ecs/components/ocean.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -333,6 +334,33 @@ TEST_CASE(
         CHECK(drop.position.z > 0);  // at the bow
         CHECK(drop.velocity.y > 0);
     }
+}
+
+TEST_CASE(
+    "water spray: how hard a body is hit does not depend on what stands far away"
+    * technique("water.impact-spray")) {
+    const auto drops_with = [](const Vec3& first) {
+        World world;
+        Schedule schedule = make_world_schedule();
+        world.create(
+            Transform{}, Water{.size = {60, 60}},
+            WaterWaves{.waves = {{.amplitude = 0.9f, .length = 14}}});
+        const ParticleCollider box = {.shape = ColliderShape::Box, .size = {1, 2, 1}};
+        const SprayObstacle obstacle = {.rate = 3000};
+        world.create(Transform{.position = first}, obstacle, box);
+        const Entity near =
+            world.create(Transform{.position = {1, 0, 2}}, SprayObstacle{.rate = 3000}, box);
+        start_world(world);
+        std::size_t sum = 0;
+        for (int i = 0; i < 120; ++i) {
+            step_world(world, schedule);
+            sum += world.get<SprayDrops>(near).drops.size();
+        }
+        return sum;
+    };
+    const std::size_t alone = drops_with({-28, 0, 2});
+    CHECK(alone > 100);
+    CHECK(drops_with({500, 0, 0}) == alone);  // on land, where nothing surges
 }
 
 TEST_CASE("water spray: a world refills its drops each step" * technique("water.crest-spray")) {
