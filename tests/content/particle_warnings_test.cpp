@@ -140,6 +140,18 @@ const Names kClosed = {
 
 }  // namespace
 
+TEST_CASE("particle warnings: two components that fill the same heights") {
+    const Lines lines = warnings_of(R"({
+        "images": {"hills": {"make": "marble", "size": 64}},
+        "entities": [{
+            "name": "ground", "transform": {}, "height_image": {"image": "hills.base_color"}, "noise_surface": {}
+        }]
+    })");
+    CHECK(
+        lines
+        == Lines{"ground: height_image and noise_surface fill the same heights: leave one out"});
+}
+
 TEST_CASE("bad emitter: rates, lifetimes and capacities that are refused, with what is expected") {
     const auto has = [](const std::string& message, std::string_view part) {
         CAPTURE(message);

@@ -1,6 +1,7 @@
 #include "content/load/level/particle_warnings.h"
 
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/height_image.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
@@ -11,6 +12,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_noise.h"
 #include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
 #include "ecs/reflect.h"
@@ -124,6 +126,10 @@ void check_colliders(const ParticleCheck& check) {
                         "shoaling_waves");
         }
         needs(ColliderShape::Water, "water");
+    });
+    world.query<const HeightImage, const NoiseSurface>().each([&](Entity entity, const HeightImage&,
+                                                                  const NoiseSurface&) {
+        check.warn(entity, "height_image and noise_surface fill the same heights: leave one out");
     });
     world.query<const ParticleCollision>().each([&](Entity entity, const ParticleCollision&) {
         if (!any) {
