@@ -193,10 +193,30 @@ TEST_CASE("gltf write: a skinned mesh keeps its joints, with more than four per 
     body.skin = 0;
     body.first_morph = 0;
     scene.nodes.push_back(body);
+    scene.skeleton.freedoms = {
+        {.joint = 2,
+         .axis = {1, 0, 0},
+         .min = -0.1f,
+         .max = 2.5f,
+         .middle = 0.4f,
+         .stiffness = 0.25f},
+        {.joint = 4, .axis = {0, 1, 0}, .min = -0.7f, .max = 0.7f},
+        {.joint = 4, .axis = {0, 0.6f, 0.8f}, .min = -0.2f, .max = 0.3f}};
 
     const GltfScene read = written_and_read(scene);
     REQUIRE(read.nodes.size() == scene.nodes.size());
     CHECK(read.joints == scene.joints);
+    REQUIRE(read.skeleton.freedoms.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const JointFreedom& was = scene.skeleton.freedoms[i];
+        const JointFreedom& is = read.skeleton.freedoms[i];
+        CHECK(is.joint == was.joint);
+        CHECK(is.axis == was.axis);
+        CHECK(is.min == was.min);
+        CHECK(is.max == was.max);
+        CHECK(is.middle == was.middle);
+        CHECK(is.stiffness == was.stiffness);
+    }
     CHECK(read.nodes.back().name == "strip.skin");
     CHECK(read.nodes.back().skin == 0);
     CHECK(read.nodes[4].parent == 3);
@@ -208,6 +228,14 @@ TEST_CASE("gltf write: a skinned mesh keeps its joints, with more than four per 
     }
     CHECK(read.skeleton.joints[3] == "joint3");
     check_equal(read.meshes[0], mesh);
+
+    scene.skeleton.freedoms = {{.joint = 5, .axis = {0, 0, 0}, .min = 1, .max = -1}};
+    const Result<std::vector<std::byte>> bytes = write_glb(scene);
+    REQUIRE(bytes.ok());
+    const Result<GltfScene> spoiled = parse_gltf(*bytes, "spoiled.glb", "");
+    REQUIRE(spoiled.ok());
+    CHECK(spoiled->warnings.size() == 1);
+    CHECK(spoiled->skeleton.freedoms.empty());
 }
 
 TEST_CASE("gltf write: parts of one node share their morph targets") {

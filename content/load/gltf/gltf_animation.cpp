@@ -1,4 +1,5 @@
 #include "content/load/gltf/gltf_document.h"
+#include "content/load/gltf/gltf_freedoms.h"
 #include "content/load/gltf/gltf_marks.h"
 #include "ecs/base/rotation.h"
 #include "ecs/base/text.h"
@@ -294,6 +295,7 @@ class AnimationBuilder {
                 add_joint(node.name, parent, node.transform);
             }
         }
+        read_joint_limits(document_, scene_);
         if (Status status = check_skeleton(scene_.skeleton); !status) {
             return fail("{}: {}", document_.file, status.error().message);
         }

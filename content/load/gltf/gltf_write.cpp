@@ -2,6 +2,7 @@
 
 #include "content/load/files/atomic_file.h"
 #include "content/load/gltf/gltf_file.h"
+#include "content/load/gltf/gltf_freedoms.h"
 #include "content/load/gltf/gltf_layers.h"
 #include "content/load/gltf/gltf_material_extras.h"
 #include "content/load/gltf/gltf_write_textures.h"
@@ -393,6 +394,14 @@ class GlbWriter {
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
             if (scene_.nodes[i].parent == static_cast<std::int32_t>(index)) {
                 node.children.push_back(number_[i]);
+            }
+        }
+        if (index < scene_.joints.size() && scene_.joints[index] >= 0) {
+            tinygltf::Value::Array limits = write_joint_limits(
+                scene_.skeleton, static_cast<std::uint16_t>(scene_.joints[index]));
+            if (!limits.empty()) {
+                node.extras = tinygltf::Value(
+                    tinygltf::Value::Object{{"jointLimits", tinygltf::Value(std::move(limits))}});
             }
         }
         const auto skinned = skinned_.find(index);
