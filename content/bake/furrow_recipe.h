@@ -30,7 +30,8 @@ LIMN_FIELDS(FurrowRecipe) {
     LIMN_FIELD(
         preset, .doc = "settings of a figure of Bando 2001, instead of scale, noise and bump",
         .values = "none hand foot arm hand_close_up faint distinct smooth rough brdf_1 "
-                  "brdf_2 light_skin dark_skin");
+                  "brdf_2 light_skin dark_skin",
+        .renamed = "measured_1=brdf_1 measured_2=brdf_2");
     LIMN_FIELD(projection, .doc = "how the surface is flattened", .values = "uv planar cylinder");
     LIMN_FIELD(size, "width of the image", "px", 1, 4096);
     LIMN_FIELD(tiles, "uv: the image repeats in both directions");

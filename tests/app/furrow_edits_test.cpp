@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn::test::furrow_edits_test {
@@ -374,6 +375,19 @@ TEST_CASE(
         return tube.noiseless_hash();
     };
     CHECK(grow(loaded->furrows) == grow(file.furrows));
+}
+
+TEST_CASE("furrow editor: files of before its BRDFs were renamed are read") {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("old.json");
+    for (const auto& [name, reflection] :
+         {std::pair("measured_1", FurrowReflection::Brdf1),
+          std::pair("measured_2", FurrowReflection::Brdf2)}) {
+        std::ofstream(path) << R"({"furrows": {}, "skin": {"reflection": ")" << name << R"("}})";
+        const auto loaded = load_furrows(path);
+        REQUIRE(loaded.ok());
+        CHECK(loaded->skin.reflection == reflection);
+    }
 }
 
 TEST_CASE(

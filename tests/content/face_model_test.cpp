@@ -135,6 +135,26 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "face model: shapes between parameters have names of their own, whatever those are called"
+    * technique("wrinkle.compression.face-model")) {
+    const FaceModel model = *parse_face_model(
+        "parameter jaw\nrotate 0 0 1 by 90 about 0 0 0\nvertex 3 1\n"
+        "parameter jaw_50\nscale 2 1 1 about 0 0 0\nvertex 3 1\n"
+        "parameter jaw_jaw_50\ntranslate 0 0 1\nvertex 1 0.25\nvertex 1 0.75\nvertex 1 0.5\n",
+        "face.txt", strip());
+    CHECK(model.parameters[2].vertices.size() == 1);
+    CHECK(model.parameters[2].weights == std::vector<float>{0.75f});
+    const GltfScene scene = make_face_model_scene("strip", model);
+    std::map<std::string, int> names;
+    for (const MorphTarget& morph : scene.meshes[0].morphs) {
+        CAPTURE(morph.name);
+        CHECK(++names[morph.name] == 1);
+    }
+    CHECK(names.size() > 5);
+    CHECK(largest_error(model, scene.meshes[0], {0.5f, 0, 1}) < 1e-6);
+}
+
 TEST_CASE("face model: a bad file is refused with its line") {
     const auto error_of = [](const std::string& text) {
         const Result<FaceModel> model = parse_face_model(text, "face.txt", strip());

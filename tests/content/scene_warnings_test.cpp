@@ -8,7 +8,9 @@
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
 #include "ecs/world.h"
 #include "tests/near.h"
 #include "tests/support.h"
@@ -411,6 +413,38 @@ TEST_CASE(
         found[0].text
         == "entity \"face\": wrinkle_maps.first_masks \"masks\" is 64 x 64 px; expected the "
            "aspect ratio of base \"skin\", 512 x 256 px: its wrinkles are not drawn");
+}
+
+TEST_CASE(
+    "scene warnings: rungs of wrinkles out of order, and regions that respond twice"
+    * technique("skin.pipeline")) {
+    World world;
+    world.insert_resource(Assets{});
+    world.create(Name{"near"}, WrinkleLadder{.displaced_from = 100, .strain_from = 200});
+    world.create(Name{"far"}, WrinkleLadder{.strain_from = 30, .maps_from = 64});
+    world.create(Name{"right"}, WrinkleLadder{.strain_from = 64, .maps_from = 64});
+    WrinkleResponse response;
+    for (const WrinkleRegion region :
+         {WrinkleRegion::Lips, WrinkleRegion::Chin, WrinkleRegion::Lips}) {
+        response.regions.push_back({.region = region});
+    }
+    world.create(Name{"twice"}, response);
+    std::vector<std::string> found;
+    for (const SceneWarning& warning : find_scene_warnings(world)) {
+        const bool is_meant = warning.text.find("wrinkle_ladder: found") != std::string::npos
+                              || warning.text.find("wrinkle_response.regions") != std::string::npos;
+        if (is_meant) {
+            found.push_back(warning.text);
+        }
+    }
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].starts_with("entity \"near\": wrinkle_ladder: found displaced_from 100, "
+                               "strain_from 200, maps_from 64 px; expected them to fall"));
+    CHECK(found[1].starts_with("entity \"far\": wrinkle_ladder: found displaced_from 512"));
+    CHECK(
+        found[2]
+        == "entity \"twice\": wrinkle_response.regions[2]: found lips again; only the first one "
+           "counts");
 }
 
 TEST_CASE("scene warnings: regions and shapes of wrinkles that the mesh does not have") {

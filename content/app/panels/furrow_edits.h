@@ -102,7 +102,7 @@ struct FurrowLook {
 LIMN_FIELDS(FurrowLook) {
     LIMN_FIELD(
         reflection, .doc = "own parameters, or one of two fitted BRDFs",
-        .values = "own brdf_1 brdf_2");
+        .values = "own brdf_1 brdf_2", .renamed = "measured_1=brdf_1 measured_2=brdf_2");
     LIMN_FIELD(melanin, "amount of melanin", "", 0, 1);
     LIMN_FIELD(blood, "amount of blood", "", 0, 1);
     LIMN_FIELD(specular, "reflectance, colorless", "", 0, 1);

@@ -32,6 +32,7 @@ struct ModelParser {
     const std::string& file;
     FaceModel model;
     bool has_transform = true;
+    std::vector<std::uint32_t> slots{};  ///< of vertices in the parameter, from 1 on; 0: none
 
     Result<Vec3> vector(std::string_view what) {
         Vec3 v;
@@ -57,6 +58,7 @@ struct ModelParser {
             return fail("{}: found a second parameter {}", lines.position(), name);
         }
         model.parameters.emplace_back().name = name;
+        slots.assign(model.mesh.positions.size(), 0);
         has_transform = false;
         return Done{};
     }
@@ -90,13 +92,13 @@ struct ModelParser {
     /// Of several weights of a vertex, the largest counts.
     void add_weight(std::uint32_t vertex, float weight) {
         FaceParameter& parameter = model.parameters.back();
-        const auto found = std::ranges::find(parameter.vertices, vertex);
-        if (found == parameter.vertices.end()) {
+        std::uint32_t& slot = slots[vertex];
+        if (slot == 0) {
             parameter.vertices.push_back(vertex);
             parameter.weights.push_back(weight);
+            slot = static_cast<std::uint32_t>(parameter.vertices.size());
         } else {
-            float& known =
-                parameter.weights[static_cast<std::size_t>(found - parameter.vertices.begin())];
+            float& known = parameter.weights[slot - 1];
             known = std::max(known, weight);
         }
     }
@@ -204,6 +206,15 @@ struct DrivenShape {
     std::vector<ShapeDriver> drivers;
 };
 
+/// The name, made longer where another shape has it: parameters come first, and keep theirs.
+std::string unused_name(std::string name, const std::vector<DrivenShape>& shapes) {
+    const auto is_taken = [&](const DrivenShape& other) { return other.shape.name == name; };
+    while (std::ranges::any_of(shapes, is_taken)) {
+        name += "_corrected";
+    }
+    return name;
+}
+
 /// Tents at kBetween that bend the line to the full rotation through the arc at those values.
 void add_in_betweens(
     const FaceModel& model, std::size_t parameter, const std::vector<Vec3>& full,
@@ -233,9 +244,11 @@ void add_in_betweens(
         }
         if (is_bent(offsets, model.unit)) {
             shapes.push_back(
-                {{fmt::format(
-                      "{}_{}", model.parameters[parameter].name,
-                      static_cast<int>(100 * kBetween[k])),
+                {{unused_name(
+                      fmt::format(
+                          "{}_{}", model.parameters[parameter].name,
+                          static_cast<int>(100 * kBetween[k])),
+                      shapes),
                   "", std::move(offsets)},
                  {{static_cast<std::uint16_t>(parameter), kBetween[k]}}});
         }
@@ -310,8 +323,9 @@ GltfScene make_face_model_scene(const std::string& name, const FaceModel& model)
             }
             if (is_bent(offsets, model.unit)) {
                 shapes.push_back(
-                    {{model.parameters[k].name + "_" + model.parameters[i].name, "",
-                      std::move(offsets)},
+                    {{unused_name(
+                          model.parameters[k].name + "_" + model.parameters[i].name, shapes),
+                      "", std::move(offsets)},
                      {{static_cast<std::uint16_t>(k), 1}, {static_cast<std::uint16_t>(i), 1}}});
             }
         }

@@ -2,8 +2,10 @@
 
 #include "ecs/components/surface.h"
 #include "ecs/components/wrinkle.h"
+#include "ecs/components/wrinkle_ladder.h"
 #include "ecs/components/wrinkle_limit.h"
 #include "ecs/components/wrinkle_maps.h"
+#include "ecs/components/wrinkle_response.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
@@ -21,6 +23,7 @@
 namespace limn {
 namespace {
 
+constexpr std::string_view kChannelPrefix = "wrinkle.";
 constexpr std::size_t kListed = 16;  ///< names in a warning, at most
 
 struct WrinkleCheck {
@@ -105,6 +108,42 @@ struct WrinkleCheck {
         }
     }
 
+    void check_ladders() {
+        world.query<const WrinkleLadder>().each([&](Entity entity, const WrinkleLadder& ladder) {
+            if (!(ladder.displaced_from >= ladder.strain_from)
+                || !(ladder.strain_from >= ladder.maps_from)) {
+                warn(
+                    entity, fmt::format(
+                                "wrinkle_ladder: found displaced_from {}, strain_from {}, "
+                                "maps_from {} px; expected them to fall: below maps_from no "
+                                "wrinkles are drawn, whatever the others say",
+                                ladder.displaced_from, ladder.strain_from, ladder.maps_from));
+            }
+        });
+    }
+
+    /// Regions for which a face has two answers.
+    void check_responses() {
+        world.query<const WrinkleResponse>().each(
+            [&](Entity entity, const WrinkleResponse& response) {
+                std::vector<WrinkleRegion> known;
+                for (std::size_t i = 0; i < response.regions.size(); ++i) {
+                    const WrinkleRegion region = response.regions[i].region;
+                    if (std::ranges::find(known, region) != known.end()) {
+                        warn(
+                            entity,
+                            fmt::format(
+                                "wrinkle_response.regions[{}]: found {} again; only the "
+                                "first one counts",
+                                i,
+                                std::string_view(kWrinkleChannels[static_cast<std::size_t>(region)])
+                                    .substr(kChannelPrefix.size())));
+                    }
+                    known.push_back(region);
+                }
+            });
+    }
+
     /// Images of a face that do not align with each other.
     void check_maps() {
         world.query<const WrinkleMaps>().each([&](Entity entity, const WrinkleMaps& maps) {
@@ -147,6 +186,8 @@ void find_wrinkle_warnings(const World& world, std::vector<SceneWarning>& warnin
             check.check_map(entity, surface, instance);
         });
     check.check_maps();
+    check.check_ladders();
+    check.check_responses();
 }
 
 }  // namespace limn
