@@ -2,6 +2,7 @@
 
 #include "content/load/files/json_document.h"
 #include "content/speech/utterance.h"
+#include "content/speech/word_alignment.h"
 #include "ecs/base/text.h"
 
 #include <algorithm>
@@ -49,6 +50,25 @@ void append_sounds(SpeechTrack& track, const std::vector<Sound>& sounds, const S
             done += segment.end - segment.start;
             append_sound(track, segment.sound, begin + (stretch.end - begin) * done / total);
         }
+    }
+}
+
+/// The sounds that are heard in `stretch` of a recording; silence before it.
+void append_heard(
+    SpeechTrack& track, const Recording& recording, std::string_view text, const Stretch& stretch) {
+    std::vector<Sound> sounds;
+    std::vector<float> usual;
+    for (const SpeechSegment& segment : make_speech_track(sounds_of_text(text)).segments) {
+        if (segment.sound.phoneme != 0) {
+            sounds.push_back(segment.sound);
+            usual.push_back(segment.end - segment.start);
+        }
+    }
+    append_sound(track, {}, stretch.begin);
+    const float begin = track.duration();
+    const std::vector<float> ends = align_sounds(recording, begin, stretch.end, sounds, usual);
+    for (std::size_t i = 0; i < sounds.size(); ++i) {
+        append_sound(track, sounds[i], ends[i]);
     }
 }
 
@@ -237,7 +257,7 @@ Result<SpeechTrack> find_labels(const Recording& sound, std::string_view text) {
     }
     SpeechTrack track;
     for (std::size_t i = 0; i < phrases.size(); ++i) {
-        append_sounds(track, sounds_of_text(phrases[i]), stretches[i]);
+        append_heard(track, sound, phrases[i], stretches[i]);
     }
     append_sound(track, {}, sound.duration());
     return track;

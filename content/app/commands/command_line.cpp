@@ -447,7 +447,7 @@ Command add_import(CLI::App& program, ImportOptions& options) {
            "--labels", options.labels,
            "when it is said, lines of start, end [s] and word (or sound, from \"sil\" on), as "
            "Audacity\n"
-           "exports them; default: found by the pauses of the sound and the length of the text")
+           "exports them; default: found by pauses of the sound and changes of its spectrum")
         ->type_name("FILE.txt");
     add_assignments(*app, options.assignments, "--set", "bvh only: scale, up, rate or positions");
     app->footer(
