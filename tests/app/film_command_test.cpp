@@ -62,8 +62,8 @@ std::string shell(const std::string& command) {
     FILE* const pipe = popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::array<char, 512> part{};
-    while (std::fgets(part.data(), part.size(), pipe) != nullptr) {
-        text += part.data();
+    while (const std::size_t count = std::fread(part.data(), 1, part.size(), pipe)) {
+        text.append(part.data(), count);
     }
     pclose(pipe);
     return text;
@@ -216,6 +216,64 @@ TEST_CASE("film: sound begins with the film and is cut or padded to its length")
             CHECK(probe(film, "nb_read_frames").starts_with("12\n"));
         }
     }
+}
+
+TEST_CASE(
+    "film: those of render and of a farm have the same sound of the scene, from their frames") {
+    const TemporaryFolder folder;
+    write_tone(folder.file("tone.wav"));
+    write_text(folder.file("bell.level.json"), R"({
+      "title": "A bell",
+      "entities": [
+        {"name": "bell", "sound_player": {"file": "tone.wav", "start": 0.5}},
+        {"name": "eye", "camera": {}}
+      ]
+    })");
+    const std::vector<std::string> rest = {"bell.level.json", "--frames", "4:9", "--fps", "10",
+                                           "--size",          "32x18",    "-o"};
+    const auto film = [&](std::vector<std::string> command, const std::string& name) {
+        command.insert(command.end(), rest.begin(), rest.end());
+        command.push_back(name);
+        CHECK(run_limn(folder, command).exit_code == 0);
+        CHECK(probe(folder.file(name), "codec_type").find("audio") != std::string::npos);
+        return shell(
+            fmt::format("ffmpeg -v error -i '{}' -f s16le -ac 1 -ar 8000 -", folder.file(name)));
+    };
+    const std::string rendered = film({"render"}, "one.mp4");
+    const std::string farmed = film({"farm", "local"}, "two.mp4");
+    CHECK(rendered.size() > 7000);  // half a second
+    REQUIRE(farmed.size() == rendered.size());
+    const auto sample = [](const std::string& sound, std::size_t i) {
+        const auto low = static_cast<std::uint8_t>(sound[2 * i]);
+        const auto high = static_cast<std::int8_t>(sound[2 * i + 1]);
+        return 256 * high + low;
+    };
+    int largest = 0;
+    for (std::size_t i = 0; i < farmed.size() / 2; ++i) {
+        largest = std::max(largest, std::abs(sample(farmed, i) - sample(rendered, i)));
+    }
+    CHECK(largest < 200);
+    // Silent until the bell, a tenth of a second after frame 4.
+    const auto loudness = [&](double begin, double end) {
+        int loudest = 0;
+        const auto last = static_cast<std::size_t>(8000 * end);
+        for (auto i = static_cast<std::size_t>(8000 * begin); i < last; ++i) {
+            loudest = std::max(loudest, std::abs(sample(farmed, i)));
+        }
+        return loudest;
+    };
+    CHECK(loudness(0, 0.07) < 100);
+    CHECK(loudness(0.15, 0.4) > 1000);
+    CHECK(shell("ls -A " + folder.file("two.mp4.farm")).find("scene.wav") == std::string::npos);
+
+    // Frames with gaps have no sound to go with.
+    CHECK(
+        run_limn(
+            folder, {"farm", "local", "bell.level.json", "--frames", "0,4", "--size", "32x18", "-o",
+                     "gap.mp4"})
+            .exit_code
+        == 0);
+    CHECK(probe(folder.file("gap.mp4"), "codec_type").find("audio") == std::string::npos);
 }
 
 TEST_CASE("film: render makes one, and goes on where it was stopped with the same bits") {

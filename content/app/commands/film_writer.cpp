@@ -134,7 +134,8 @@ std::vector<std::string> ffmpeg_arguments(
     if (!settings.sound.empty()) {
         arguments.insert(
             arguments.end(),
-            {"-i", "file:" + settings.sound, "-map", "0:v", "-map", "1:a", "-af", "apad"});
+            {"-ss", fmt::format("{:.6f}", settings.sound_start), "-i", "file:" + settings.sound,
+             "-map", "0:v", "-map", "1:a", "-af", "apad"});
         arguments.insert(
             arguments.end(), {"-c:a", kind == FilmKind::WebM ? "libopus" : "aac", "-b:a", "192k",
                               "-ar", "48000", "-t", fmt::format("{:.6f}", frames / settings.fps)});

@@ -27,8 +27,9 @@ enum class FilmKind : std::uint8_t { Mp4, WebM, Mkv, Gif };
 struct FilmSettings {
     double fps = 60;    ///< frames per second, > 0
     int quality = 85;   ///< 0 .. 100: smallest file .. no visible loss
-    std::string sound;  ///< a sound file that starts with the film, cut or padded to its length;
+    std::string sound;  ///< a sound file that plays with the film, cut or padded to its length;
                         ///< empty: silent
+    double sound_start = 0;  ///< what of the sound is left out before the film begins [s], >= 0
 };
 
 /// Fails, before anything is rendered, where the film cannot be made: no such folder, no ffmpeg, no

@@ -52,6 +52,7 @@ struct FarmJob {
     std::vector<int> frames;        ///< rising, each once
     std::string film;  ///< made of the frames at the end, relative to the job; empty: none
     FilmSettings film_settings;  ///< of that
+    bool scene_sound = false;    ///< its sound is the scene's own, from 0 s on
     FarmScheduler scheduler = FarmScheduler::Local;
     std::vector<std::string> hosts;  ///< of Parallel: for ssh, ":" is this machine
     std::string partition;           ///< of Slurm; empty: its default

@@ -281,6 +281,11 @@ Status make_job_film(const FarmJob& job) {
     if (!settings.sound.empty()) {
         settings.sound = job.folder + "/inputs/" + settings.sound;
     }
+    if (job.scene_sound) {
+        const auto span = static_cast<std::size_t>(job.frames.back() - job.frames.front() + 1);
+        settings.sound = span == job.frames.size() ? settings.sound : std::string();
+        settings.sound_start = job.frames.front() / job.fps;
+    }
     LIMN_TRY(check_film(film_path(job), settings));
     return make_film(files, film_path(job), settings, true);
 }

@@ -10,6 +10,7 @@
 #include "content/app/farm/farm_tasks.h"
 #include "content/load/files/atomic_file.h"
 #include "content/load/level/level_show.h"
+#include "content/sound/scene_sound.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/text.h"
 
@@ -76,6 +77,24 @@ int choose_chunk(const FarmOptions& options, std::size_t frames) {
         std::clamp<std::size_t>(frames / (processes * kChunksPerProcess), 1, kMaxAutoChunk));
 }
 
+/// Keeps what is heard of the scene until the last frame, or its own end, for the film.
+Status freeze_sound(const Stage& stage, FarmJob& job) {
+    const std::vector<SceneSound> sounds = stage_sounds(stage);
+    const bool is_silent =
+        job.film.empty() || film_kind(job.film) == FilmKind::Gif || sounds.empty();
+    if (is_silent || !job.film_settings.sound.empty()) {
+        return Done{};
+    }
+    const double end = std::max((job.frames.back() + 1) / job.fps, stage.scene.duration);
+    const std::string file = job.folder + "/scene.wav";
+    LIMN_TRY(save_wave(mix_sounds(sounds, 0, end), file));
+    job.film_settings.sound = LIMN_TRY(freeze_other_file(job, "sound", file));
+    job.scene_sound = true;
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    return Done{};
+}
+
 /// Loads the scene once, to see that it can be, and keeps copies of all that it read.
 Status freeze_scene(const FarmOptions& options, FarmJob& job) {
     const std::string scene = !options.render.scene.empty()
@@ -93,6 +112,7 @@ Status freeze_scene(const FarmOptions& options, FarmJob& job) {
         LIMN_TRY(choose_camera(*stage, options.render.camera));
         path = absolute(stage->scene.path);
         read = recorder.paths();
+        LIMN_TRY(freeze_sound(*stage, job));
     }
     const std::string root = std::filesystem::path(path).parent_path().string();
     std::vector<std::string> files;
@@ -117,7 +137,7 @@ Status freeze_other_inputs(FarmJob& job) {
                    + LIMN_TRY(freeze_other_file(job, "backdrop", word.substr(backdrop.size())));
         }
     }
-    if (!job.film_settings.sound.empty()) {
+    if (!job.film_settings.sound.empty() && !job.scene_sound) {
         job.film_settings.sound =
             LIMN_TRY(freeze_other_file(job, "sound", job.film_settings.sound));
     }
