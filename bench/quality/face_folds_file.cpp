@@ -85,7 +85,7 @@ measure_face(std::string_view name, const MeshData& face, QualityReport& report,
             fmt::format("{}: {}, shortening of {}", name, rule.name, regions), 100 * result.folding,
             "%");
         const std::string contrast =
-            fmt::format("{}: {}, that by the most of smooth skin", name, rule.name);
+            fmt::format("{}: {}, relative to smooth skin", name, rule.name);
         const double ratio = result.folding / std::max(result.smooth, 1e-4);
         if (rule.dimples && !has_dimples) {
             report.inform(contrast, ratio);

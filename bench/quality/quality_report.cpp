@@ -159,9 +159,13 @@ Result<std::string> image_tag(const ColorImage& image, std::string_view caption)
 
 std::string quality_table(std::span<const MeasuredQuality> measured) {
     std::size_t width = 0;
+    std::size_t numbers = 14;
+    std::size_t limits = 14;
     for (const MeasuredQuality& one : measured) {
         for (const QualityRow& row : one.report.rows) {
             width = std::max(width, row.name.size());
+            numbers = std::max(numbers, number_text(row.found, row.unit).size());
+            limits = std::max(limits, limit_text(row).size());
         }
     }
     std::string text;
@@ -169,8 +173,8 @@ std::string quality_table(std::span<const MeasuredQuality> measured) {
         text += fmt::format("{}: vs {}\n", one.effect->name, one.effect->oracle);
         for (const QualityRow& row : one.report.rows) {
             text += fmt::format(
-                "  {:<{}}  {:>14}  {:<16}{}\n", row.name, width, number_text(row.found, row.unit),
-                limit_text(row),
+                "  {:<{}}  {:>{}}  {:<{}}  {}\n", row.name, width, number_text(row.found, row.unit),
+                numbers, limit_text(row), limits,
                 row.bound == QualityBound::None ? ""
                 : holds(row)                    ? "ok"
                                                 : "VIOLATED");

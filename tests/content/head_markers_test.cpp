@@ -13,6 +13,7 @@
 #include "systems/animation/pose_system.h"
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_binding_system.h"
+#include "systems/animation/surface_patches.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
@@ -28,6 +29,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -216,6 +218,67 @@ TEST_CASE(
             CHECK((seam || neck || crown));
         }
     }
+}
+
+TEST_CASE(
+    "head markers: their surface has no creases but where the markers themselves fold back"
+    * technique("face.bids-surface")) {
+    const MeshData& mesh = surface();
+    std::map<std::string, std::uint64_t> kind_of;
+    std::vector<std::uint64_t> kinds;
+    for (const std::string& name : head_markers().names) {
+        kinds.push_back(kind_of.try_emplace(name, kind_of.size()).first->second);
+    }
+    const auto faces = make_patch_faces(mesh.positions, mesh.indices, kinds);
+    REQUIRE(faces);
+    const std::vector<std::uint32_t>& corners = faces->corners;
+    std::vector<Vec4> patches;
+    make_patches(mesh.positions, corners, patches);
+    std::vector<Vec3> normals(mesh.positions.size(), Vec3(0));
+    std::vector<Vec3> areas;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3& a = mesh.positions[corners[i / 3 * 3]];
+        areas.push_back(glm::cross(
+            mesh.positions[corners[i / 3 * 3 + 1]] - a,
+            mesh.positions[corners[i / 3 * 3 + 2]] - a));
+        normals[corners[i]] += areas[i];
+        first[{corners[i], corners[i % 3 == 2 ? i - 2 : i + 1]}] = i;
+    }
+    const auto geometric_normal = [&](std::size_t corner, float share) {
+        Vec3 weights(0);
+        weights[static_cast<int>(corner % 3)] = 1.0f - share;
+        weights[static_cast<int>((corner + 1) % 3)] = share;
+        const PatchPoint at = evaluate_patch(
+            std::span(patches).subspan(corner / 3 * kPatchTexels, kPatchTexels), weights.x,
+            weights.y);
+        return glm::normalize(glm::cross(at.by_u, at.by_v));
+    };
+    float largest = 0;
+    int smooth = 0;
+    int folded = 0;
+    for (const auto& [ends, i] : first) {
+        const auto other = first.find({ends.second, ends.first});
+        if (ends.first > ends.second || other == first.end()) {
+            continue;
+        }
+        const std::size_t j = other->second;
+        const bool faces_along = glm::dot(areas[i], normals[ends.first]) > 0
+                                 && glm::dot(areas[i], normals[ends.second]) > 0
+                                 && glm::dot(areas[j], normals[ends.first]) > 0
+                                 && glm::dot(areas[j], normals[ends.second]) > 0;
+        ++(faces_along ? smooth : folded);
+        for (int k = 0; k <= 32 && faces_along; ++k) {
+            const float t = static_cast<float>(k) / 32.0f;
+            const Vec3 n = geometric_normal(i, t);
+            const Vec3 m = geometric_normal(j, 1.0f - t);
+            largest = std::max(
+                largest, glm::degrees(std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m))));
+        }
+    }
+    CHECK(largest <= 0.1f);
+    CHECK(smooth == 1033);
+    CHECK(folded == 56);
 }
 
 TEST_CASE(
