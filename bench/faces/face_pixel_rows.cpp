@@ -1,6 +1,5 @@
+#include "bench/faces/face_drawing.h"
 #include "bench/faces/face_rows.h"
-#include "content/app/commands/headless.h"
-#include "content/app/commands/stage.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/wrinkle.h"
@@ -11,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <memory>
 #include <string>
 
 // A cheek and a forehead that fill the image, as plain PBR and as skin that wrinkles. The cost of a
@@ -40,28 +37,6 @@ const Look kLooks[] = {
     {"PBR that wrinkles", ShadingModel::Pbr, true, false, kPixelLimit},
     {"skin that wrinkles, no diffusion", ShadingModel::Subsurface, true, false, kPixelLimit},
     {"skin that wrinkles, diffusion", ShadingModel::Subsurface, true, true, 0}};
-
-/// A level with its OpenGL, drawn again and again.
-struct Drawing {
-    std::unique_ptr<Stage> stage;
-    HeadlessRenderer headless;
-
-    /// Processor time of a frame [ms].
-    double draw(const IVec2& size) {
-        const auto now = [] {
-            std::timespec time{};
-            clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-            return 1e3 * static_cast<double>(time.tv_sec)
-                   + 1e-6 * static_cast<double>(time.tv_nsec);
-        };
-        const double begin = now();
-        const RenderView view = make_render_view(
-            stage->world, stage->scene.camera, {.width = size.x, .height = size.y});
-        render_frame(*headless.renderer, stage->world, view);
-        frame_graph(*headless.renderer).wait_for_timings();
-        return now() - begin;
-    }
-};
 
 /// Sets the skin of the level to `look`.
 void dress(Stage& stage, const Look& look) {

@@ -56,5 +56,8 @@ void add_deform_rows(FaceBench& bench);   ///< morph targets, muscles, joints, a
 void add_face_growth(FaceBench& bench);   ///< 1 .. 100 faces
 /// Wrinkled skin beside plain PBR. Fails without OpenGL.
 [[nodiscard]] Status add_pixel_rows(FaceBench& bench);
+/// Bodies with furrows by three models of reflection, beside Table 6.1 of Bando 2001. Fails without
+/// OpenGL.
+[[nodiscard]] Status add_furrow_rows(FaceBench& bench);
 
 }  // namespace limn::bench

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     app.add_option("--json", json, "write the numbers as JSON; - is stdout");
     app.add_option("--svg", svg, "draw the cost per face over their number");
     app.add_option("--only", only, "one part")
-        ->check(CLI::IsMember({"measure", "deform", "growth", "pixels"}));
+        ->check(CLI::IsMember({"measure", "deform", "growth", "pixels", "furrows"}));
     app.add_option("--repeats", bench.repeats, "runs of each at most, of which the best counts")
         ->check(CLI::Range(1, 1000));
     if (const auto stop = bench::parse_arguments(app, "limn bench faces", argc, argv)) {
@@ -52,6 +52,12 @@ int main(int argc, char** argv) {
     }
     if (wanted("pixels")) {
         if (const Status drawn = add_pixel_rows(bench); !drawn) {
+            fmt::print(stderr, "limn bench: {}\n", drawn.error().message);
+            return 1;
+        }
+    }
+    if (wanted("furrows")) {
+        if (const Status drawn = add_furrow_rows(bench); !drawn) {
             fmt::print(stderr, "limn bench: {}\n", drawn.error().message);
             return 1;
         }
