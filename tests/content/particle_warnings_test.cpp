@@ -147,9 +147,9 @@ TEST_CASE("particle warnings: two components that fill the same heights") {
             "name": "ground", "transform": {}, "height_image": {"image": "hills.base_color"}, "noise_surface": {}
         }]
     })");
-    CHECK(
-        lines
-        == Lines{"ground: height_image and noise_surface fill the same heights: leave one out"});
+    const std::string wanted =
+        R"(entity "ground": height_image and noise_surface fill the same heights: leave one out)";
+    CHECK(std::count(lines.begin(), lines.end(), wanted) == 1);
 }
 
 TEST_CASE("bad emitter: rates, lifetimes and capacities that are refused, with what is expected") {
