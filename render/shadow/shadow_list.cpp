@@ -149,6 +149,10 @@ void ShadowCollector::request_views(
     for (const ShadowedLight& light : lights.shadowed) {
         LightViews request = {
             .light = &light, .key = key_of(light.entity), .settings = sanitize(light.settings)};
+        if (light.kind == LightKind::Directional && (kind & kMainViews) == 0) {
+            // Mirrors ripple and probes are small: they do not show the shadows' texels.
+            request.settings.resolution = std::max(request.settings.resolution / 2, 16);
+        }
         request.first_view = views_.size();
         const Shadow& settings = request.settings;
         const bool perspective =

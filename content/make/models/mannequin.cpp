@@ -128,10 +128,11 @@ class FigureBuilder {
         lathe.segments = shape_.segments;
         lathe.crease = 1.3f;
         lathe.profile.clear();
-        constexpr int kRows = 28;
-        for (int i = 0; i <= kRows; ++i) {
+        const int rows = std::max(7 * shape_.segments / 8, 7);
+        for (int i = 0; i <= rows; ++i) {
             // Denser at the ends, where it is round.
-            const float u = 0.5f - 0.5f * std::cos(kPi * static_cast<float>(i) / kRows);
+            const float u =
+                0.5f - 0.5f * std::cos(kPi * static_cast<float>(i) / static_cast<float>(rows));
             lathe.profile.push_back({radius_at(radii, u, length), u * length});
         }
         lathe.profile.front().x = 0;
