@@ -23,8 +23,8 @@ bool runs_always(const gpu::DeviceCaps&) {
 
 constexpr RenderProfile kProfiles[] = {
     {"full", "every effect", runs_full, standard_image},
-    {"plain", "surfaces, lights, shadows, sky, water and particles, without what a lens adds",
-     runs_always, plain_image},
+    {"plain", "without caustics, probes, shadows of particles, and what a lens adds", runs_always,
+     plain_image},
 };
 
 }  // namespace

@@ -65,6 +65,9 @@ void append_heard(
         }
     }
     append_sound(track, {}, stretch.begin);
+    if (sounds.empty()) {
+        return;  // spelled, but silent, as a lone "h"
+    }
     const float begin = track.duration();
     const std::vector<float> ends = align_sounds(recording, begin, stretch.end, sounds, usual);
     for (std::size_t i = 0; i < sounds.size(); ++i) {

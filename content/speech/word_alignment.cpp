@@ -208,7 +208,8 @@ std::vector<float> align_sounds(
     }
     ends.back() = end;
     const auto frames = static_cast<std::size_t>(std::max(0.0f, end - begin) / kHop);
-    if (frames < kMinFrames * sounds.size()) {
+    constexpr std::size_t kMostFrames = 6000;  // 30 s without a pause: the search is quadratic
+    if (frames < kMinFrames * sounds.size() || frames > kMostFrames) {
         return ends;
     }
     const std::vector<HeardFrame> heard = hear(recording, begin, frames);
@@ -223,14 +224,16 @@ std::vector<float> align_sounds(
         const float expected = static_cast<float>(frames) * usual[i] / total;
         const auto longest =
             std::max(static_cast<std::size_t>(kMaxStretch * expected), 2 * kMinFrames);
+        std::vector<float> lasting(longest + 1);  // cost by duration
+        for (std::size_t d = kMinFrames; d <= longest; ++d) {
+            lasting[d] = kDurationCost * square(std::log(static_cast<float>(d) / expected));
+        }
         std::vector<float> next(frames + 1, kNever);
         std::vector<std::uint32_t>& start = starts.emplace_back(frames + 1, 0);
         for (std::size_t f = kMinFrames; f <= frames; ++f) {
             for (std::size_t d = kMinFrames; d <= std::min(longest, f); ++d) {
-                const float cost =
-                    best[f - d] + costs[f][kind] - costs[f - d][kind]
-                    + kDurationCost * square(std::log(static_cast<float>(d) / expected))
-                    - kChangeGain * changes[f];
+                const float cost = best[f - d] + costs[f][kind] - costs[f - d][kind] + lasting[d]
+                                   - kChangeGain * changes[f];
                 if (cost < next[f]) {
                     next[f] = cost;
                     start[f] = static_cast<std::uint32_t>(f - d);

@@ -12,7 +12,7 @@ namespace limn {
 // programming over the ends of sounds. A sound costs by how far its duration is from the usual one
 // and by how unlike its kind it is in loudness and brightness; an end gains by how much the
 // spectrum changes there. Of the words of a synthesized voice, half are found to 10 ms and
-// nine in ten to 60 ms; nothing is learned from a speaker.
+// nine in ten to 70 ms; nothing is learned from a speaker.
 
 /// Ends of the sounds, none of them silence, that are spoken from `begin` to `end` [s]: rising, the
 /// last is `end`. `usual`: their durations [s], in any proportion to that time.

@@ -51,8 +51,8 @@ const char* cube_error(const std::vector<const gpu::Texture*>& faces) {
         if (face->width() != face->height()) {
             return "expected square faces";
         }
-        if (face->desc().format != faces[0]->desc().format || face->width() != faces[0]->width()) {
-            return "expected faces of one size and format";
+        if (face->desc() != faces[0]->desc()) {
+            return "expected faces of one size, format and number of mip levels";
         }
     }
     return "";
@@ -77,17 +77,20 @@ const gpu::Texture*
 PanoramaLayerEffect::find_cube(const FrameData& frame, const std::vector<ImageId>& faces) {
     std::vector<std::uint32_t> images;
     std::vector<const gpu::Texture*> textures;
-    std::vector<std::uint64_t> serials;
+    std::vector<std::uint64_t> sources;
     for (const ImageId face : faces) {
         images.push_back(face.index);
-        textures.push_back(frame.materials->images().find_texture(face));
-        serials.push_back(textures.back() != nullptr ? textures.back()->serial() : 0);
+        const gpu::Texture* const texture = frame.materials->images().find_texture(face);
+        textures.push_back(texture);
+        sources.push_back(texture != nullptr ? texture->serial() : 0);
+        sources.push_back(texture != nullptr ? frame.assets->images[face.index].version : 0);
     }
     Cube& cube = cubes[images];
-    if (cube.serials == serials) {
+    cube.used = true;
+    if (cube.sources == sources) {
         return cube.texture ? &cube.texture : nullptr;
     }
-    cube = {.serials = serials, .texture = {}};
+    cube = {.sources = sources, .texture = {}, .used = true};
     if (const char* const error = cube_error(textures); *error != '\0') {
         log_warn("panorama_layer: {}; the layer is not drawn", error);
         return nullptr;
@@ -107,6 +110,9 @@ void PanoramaLayerEffect::collect(FrameData& frame) {
     if (frame.assets_replaced) {
         cubes.clear();
     }
+    for (auto& [images, cube] : cubes) {
+        cube.used = false;
+    }
     frame.world->query<const PanoramaLayer, Optional<const WorldTransform>>().each(
         [&](Entity entity, const PanoramaLayer& layer, const WorldTransform* transform) {
             const PanoramaLayer settings = within_ranges(layer);
@@ -120,6 +126,7 @@ void PanoramaLayerEffect::collect(FrameData& frame) {
             }
         });
     std::ranges::sort(layers, {}, &Layer::entity);
+    std::erase_if(cubes, [](const auto& entry) { return !entry.second.used; });
 }
 
 void PanoramaLayerEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {

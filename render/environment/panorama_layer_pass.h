@@ -25,8 +25,9 @@ struct PanoramaLayerEffect {
     };
     /// A cube map of six images, mirrored as cube maps are: its +z is the front.
     struct Cube {
-        std::vector<std::uint64_t> serials;  ///< of the images that it was copied from
+        std::vector<std::uint64_t> sources;  ///< serials and versions of the images
         gpu::Texture texture;
+        bool used = false;  ///< in this frame
     };
 
     const gpu::Program* image_program = nullptr;

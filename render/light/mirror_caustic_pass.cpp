@@ -87,7 +87,12 @@ void MirrorCausticEffect::draw(FrameGraph& graph, const FrameData&, ViewData& vi
         [this, &view](PassContext& context) {
             bind_view(context, view);
             context.device().bind_vertex_array(view.frame->meshes->streams().vertices());
+            const bool any_wires = std::ranges::any_of(
+                mirrors, [](const CausticMirror& mirror) { return mirror.settings.wires > 0; });
             for (const bool wires : {false, true}) {
+                if (wires && !any_wires) {
+                    break;
+                }
                 context.device().use(gpu::Pipeline{
                     program,
                     {.depth = {.write = false},

@@ -92,10 +92,10 @@ void main() {
         }
     }
     int wires = int(record.wires.x);
-    if (wires > 0 && cell.y % wires == 0) {
+    if (wires > 0 && cell.y % wires == 0 && a.z > 0.0 && b.z > 0.0) {
         add_wire(first, side, a.xy, b.xy);
     }
-    if (wires > 0 && cell.x % wires == 0) {
+    if (wires > 0 && cell.x % wires == 0 && a.z > 0.0 && c.z > 0.0) {
         add_wire(first, side, a.xy, c.xy);
     }
 }

@@ -10,5 +10,5 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     // A triangle with a vertex that faces away would spread across the plane.
-    radiance = vec4(dark > 0.0 ? vec3(0.0) : color * mix(lit, 1.0, even), 0.0);
+    radiance = vec4(dark > 0.0 ? vec3(0.0) : color * (even > 0.0 ? 1.0 : lit), 0.0);
 }

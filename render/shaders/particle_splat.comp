@@ -60,7 +60,7 @@ Disc disc_of(Particle p) {
     bool is_visible = !p.is_dead && color.a > 0.0 && clip.w > 0.0 && clip.z <= clip.w;
     vec3 light = color.rgb * (color.a * (1.0 - fog_before(p.position).a));
     return Disc((clip.xy / clip.w * 0.5 + 0.5) * view.size.xy, is_visible ? 0.5 * max(diameter, kMinPoint) : 0.0,
-                clip.z / clip.w, light, 0.5 + 0.5 * random_signed(p.random, 7u));
+                clip.z / clip.w, light, 0.5 + 0.5 * random_signed(p.random, 9u));
 }
 
 // Pixels whose centers are in the disc's bounding square: the first, and one past the last.

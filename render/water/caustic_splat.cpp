@@ -150,10 +150,10 @@ void sum_stripe(
         const Vec4* const next = row + cells + 1;
         for (int x = 0; x < cells; ++x) {
             add_cell(sheet, row[x], row[x + 1], next[x], next[x + 1], cut);
-            if (wires > 0 && z % wires == 0) {
+            if (wires > 0 && z % wires == 0 && row[x].z > 0 && row[x + 1].z > 0) {
                 add_wire(sheet, row[x], row[x + 1]);
             }
-            if (wires > 0 && x % wires == 0) {
+            if (wires > 0 && x % wires == 0 && row[x].z > 0 && next[x].z > 0) {
                 add_wire(sheet, row[x], next[x]);
             }
         }

@@ -117,6 +117,19 @@ TEST_CASE("shapes: a boulder is as large as it says, another by seed, and flatte
     const double ellipsoid = kPiD / 6 * 2 * 1 * 1.5;
     CHECK(signed_volume(boulder) < 1.1 * ellipsoid);
     CHECK(signed_volume(boulder) > 0.5 * ellipsoid);
+    for (int seed = 1; seed <= 40; ++seed) {  // few planes leave much between them
+        const MeshData sharp = make_boulder(
+            {.size = Vec3(1),
+             .facets = 6,
+             .wear = 0,
+             .roughness = 0,
+             .segments = 24,
+             .rings = 12,
+             .seed = seed});
+        for (const Vec3& p : sharp.positions) {
+            REQUIRE(glm::length(p) < 0.63f);
+        }
+    }
     BoulderShape other = shape;
     other.seed = 2;
     CHECK(make_boulder(other).positions != boulder.positions);

@@ -152,7 +152,7 @@ TEST_CASE("quality: wrong usage ends with 2, and the effects are listed in the h
     CHECK(no_file.find("found the file flat.obj") != std::string::npos);
     const ProgramRun help = run_limn(folder, {"quality", "--help"});
     CHECK(help.exit_code == 0);
-    CHECK(quality_effects().size() == 22);
+    CHECK(quality_effects().size() == 23);
     for (const QualityEffect& effect : quality_effects()) {
         CHECK(
             help.out.find(fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle))

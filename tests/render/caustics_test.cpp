@@ -452,7 +452,8 @@ TEST_CASE("caustics: wires are lines of light from ray to ray, every n-th of the
     std::vector<Vec4> rays;
     for (int z = 0; z <= kCells; ++z) {
         for (int x = 0; x <= kCells; ++x) {  // moved aside by half a texel
-            rays.emplace_back(Vec4(4 * x, 4 * z, 0, 0) + Vec4(0.5f, 0.5f, 0, 0));
+            constexpr float kFaint = 1e-9f;  // less than the sums hold
+            rays.emplace_back(Vec4(4 * x, 4 * z, kFaint, 0) + Vec4(0.5f, 0.5f, 0, 0));
         }
     }
     const auto summed = [&](float wires) {
@@ -482,6 +483,10 @@ TEST_CASE("caustics: wires are lines of light from ray to ray, every n-th of the
     }
     // Four lines each way of 64 texels, less the half texel that is beyond the border.
     CHECK(sum == test::near(4 * 2 * 4 * 63.5).epsilon(0.02));
+    for (Vec4& ray : rays) {
+        ray.z = 0;  // in the shadow, or beside the water
+    }
+    CHECK(summed(4) == none);
 }
 
 TEST_CASE_FIXTURE(

@@ -133,7 +133,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         }
     });
     app->footer(
-        R"(Every frame simulates one step and renders off screen, with levels of detail for its size, as `limn
+        R"(Every frame simulates one step and renders off screen; a level has detail for the size of the image, as `limn
 play` chooses them (`--set rendering.level_rows=1080`: as `limn render`). Times are in milliseconds;
 "all threads" is CPU time, which depends less on other programs. Shaders are compiled before the first frame
 ("compile_ms"); "compiled" counts those that a measured frame had to compile.

@@ -4,8 +4,12 @@
 #include "render/render_profile.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace limn {
 
@@ -57,12 +61,19 @@ void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile, std::strin
         ->type_name("gpu|software");
     std::string names;
     std::string docs;
+    std::vector<std::string> known;
     for (const RenderProfile& each : render_profiles()) {
+        known.emplace_back(each.name);
         names += fmt::format("{}{}", names.empty() ? "" : "|", each.name);
         docs += fmt::format("{}{}: {}", docs.empty() ? "" : "; ", each.name, each.doc);
     }
     app.add_option("--renderer", renderer, docs + "; default: the first that the device can run")
-        ->type_name(names);
+        ->type_name(names)
+        ->check([names = std::vector<std::string>(known)](const std::string& text) {
+            return std::ranges::find(names, text) != names.end()
+                       ? std::string()
+                       : fmt::format("found {}, expected one of {}", text, fmt::join(names, " "));
+        });
 }
 
 CLI::Option* add_show(CLI::App& app, std::string& technique) {

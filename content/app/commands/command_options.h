@@ -74,7 +74,7 @@ void add_assignments(
     CLI::App& app, std::vector<Assignment>& assignments, const std::string& name = "--set",
     const std::string& doc = "change a field after loading");
 
-/// --profile of the device.
+/// --profile of the device, and --renderer.
 void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile, std::string& renderer);
 
 /// --show of a technique.

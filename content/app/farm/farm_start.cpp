@@ -85,6 +85,10 @@ Status freeze_sound(const Stage& stage, FarmJob& job) {
     if (is_silent || !job.film_settings.sound.empty()) {
         return Done{};
     }
+    const auto span = static_cast<std::size_t>(job.frames.back() - job.frames.front() + 1);
+    if (span != job.frames.size()) {
+        return Done{};  // a film with gaps has no sound
+    }
     const double end = std::max((job.frames.back() + 1) / job.fps, stage.scene.duration);
     const std::string file = job.folder + "/scene.wav";
     LIMN_TRY(save_wave(mix_sounds(sounds, 0, end), file));

@@ -67,6 +67,12 @@ Status MarkerPanel::load(const std::string& take, const std::string& map) {
         places = LIMN_TRY(parse_marker_map(text, file));
         LIMN_TRY(check_marker_map(motion.names, places, file));
     }
+    for (const std::string& name : motion.names) {
+        if (name.find_first_of("#=") != std::string::npos) {
+            return fail(
+                "{}: marker \"{}\": found # or =, expected a name that a map can hold", take, name);
+        }
+    }
     take_ = take;
     map_ = file;
     rest_.assign(
@@ -87,6 +93,9 @@ const MeshData* MarkerPanel::skin_mesh(const World& world) const {
 }
 
 Status MarkerPanel::open(const World& world, Entity entity) {
+    if (names_.empty()) {
+        return fail("found no recording, expected limn play --markers TAKE.trc");
+    }
     const auto* const assets = world.find_resource<Assets>();
     Entity found;
     std::size_t most = 0;

@@ -39,7 +39,7 @@ class MarkerPanel {
     [[nodiscard]] bool has_take() const { return !names_.empty(); }
     [[nodiscard]] bool has_unsaved() const { return unsaved_; }
 
-    /// Shows the skin of the character of `entity` or, if that has none, the one whose shapes move
+    /// Shows the skin of `entity` or, if that has no shapes, the one whose shapes move
     /// most vertices. Fails if the world has no face.
     [[nodiscard]] Status open(const World& world, Entity entity);
     void close() { skin_ = {}; }

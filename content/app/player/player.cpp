@@ -204,6 +204,7 @@ Status Player::run() {
             follow_sounds();
         }
         simulate(dt, input);
+        LIMN_TRY(follow_renderer());
         draw_frame(dt, input);
         if (screenshot_wanted_) {
             screenshot_wanted_ = false;

@@ -144,8 +144,8 @@ class Player {
     [[nodiscard]] std::vector<std::filesystem::file_time_type> level_file_times() const;
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
-    /// Takes the renderer that was asked for.
-    void follow_renderer();
+    /// Takes the renderer that was asked for; fails if nothing can be drawn any more.
+    Status follow_renderer();
     void request_next_renderer();
     /// Asks the viewer of a WrinkleTrial, and adds new answers to the file
     /// limn-<level>-answers.csv.

@@ -78,7 +78,6 @@ void Player::draw_frame(float dt, const Input& input) {
                 make_render_scale(options_.scale, false, device_->caps().software, window_size);
         }
     }
-    follow_renderer();
     const Clock::time_point begin = Clock::now();
     if (furrows_.is_open()) {
         stage_->world.run(update_furrow_skins);  // also while paused
@@ -117,21 +116,19 @@ void Player::request_next_renderer() {
     hud_->toast(fmt::format("{}: {}", next.name, next.doc));
 }
 
-void Player::follow_renderer() {
+Status Player::follow_renderer() {
     const Result<bool> changed = profiles_->begin_frame();
     if (!changed) {
         log_error("{}", changed.error().message);
         hud_->toast(changed.error().message, ToastKind::Bad);
-        if (profiles_->loaded() == nullptr && !profiles_->load()) {
-            window_->request_close();  // nothing can be drawn
-            return;
-        }
+        LIMN_TRY(profiles_->load(profiles_->loaded() != nullptr ? profiles_->loaded()->name : ""));
     }
     if (!changed || *changed) {
         renderer_ = &profiles_->renderer();
         off_renderer_.reset();
         warm_up_level();
     }
+    return Done{};
 }
 
 /// Shows edits since the last frame at once, also while paused.

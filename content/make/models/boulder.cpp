@@ -36,7 +36,8 @@ std::vector<Vec3> make_planes(const BoulderShape& shape) {
 /// rounds their edges the more the smaller p is.
 float radius_toward(const BoulderShape& shape, const std::vector<Vec3>& planes, const Vec3& d) {
     const float p = 6 + 60 * square(1 - shape.wear);
-    float sum = 0;
+    constexpr float kBall = 0.8f;  // what is left between the planes is cut by a ball
+    float sum = std::pow(kBall, p);
     for (const Vec3& plane : planes) {
         sum += std::pow(std::max(glm::dot(plane, d), 0.0f), p);
     }
