@@ -21,7 +21,7 @@ struct ViewData;
 // The particle draws of a view, as one list: layer by layer, and within a layer from back to front.
 // Consecutive particles are one draw call if they share a program and texture arrays. Pools that
 // the GPU moves come last in their layer, but for those that only add light: they come first, so
-// that dust and smoke dim them.
+// that dust and smoke at full resolution dim them, also where those are behind them.
 
 /// In the order in which they are drawn.
 enum class SpriteLayer : std::uint8_t {
