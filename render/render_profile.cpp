@@ -1,6 +1,7 @@
 #include "render/render_profile.h"
 
 #include "ecs/base/check.h"
+#include "ecs/base/text.h"
 #include "render/gpu/device.h"
 #include "render/image.h"
 
