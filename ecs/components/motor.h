@@ -12,7 +12,7 @@ namespace limn {
 /// climbs steps, slides along walls, falls, wades and swims. Its origin is between its feet, and it
 /// faces +z. Ground that moves and turns carries it along. A Parent only gives the place where it
 /// begins: the motor takes the entity off it, and what it stands on carries it. If it is attached
-/// to something later, it does not move by itself until it is detached.
+/// to something by Attach, or later, it does not move by itself until it is detached.
 struct CharacterMotor {
     float radius = 0.28f;
     float height = 1.75f;

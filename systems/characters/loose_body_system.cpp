@@ -104,7 +104,7 @@ void meet_character(
     }
     const Vec3 normal = normalize_or(center - nearest.a, Vec3(0, 0, 1));
     center += depth * normal;
-    const float toward = glm::dot(state.velocity - row.state->velocity, normal);
+    const float toward = glm::dot(state.velocity + state.drift - row.state->velocity, normal);
     if (toward > 0) {
         const float share = motor.push / std::max(motor.push + row.body->mass, 1e-6f);
         row.state->velocity += share * toward * normal;

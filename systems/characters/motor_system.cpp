@@ -235,8 +235,14 @@ void accelerate(
     state.velocity = shortened_to(state.velocity, kMotorTopSpeed);
 }
 
+/// What a ground belongs to: one that moves as a whole.
+Entity base_of(std::span<const PlacedGround> grounds, Entity entity) {
+    const PlacedGround* const ground = find_placed(grounds, entity);
+    return ground != nullptr ? ground->base : Entity{};
+}
+
 /// Pushes it out of walls and ceilings, and takes away the speed into them. `drift`: in addition to
-/// its own velocity.
+/// its own velocity; shared by what belongs to the ground that it has left.
 void leave_solids(const Surroundings& around, const Vec3& drift, MotorBody& body) {
     for (int i = 0; i < kMaxContacts; ++i) {
         const std::optional<GroundContact> touch = around.touch(body.transform.position);
@@ -252,7 +258,9 @@ void leave_solids(const Surroundings& around, const Vec3& drift, MotorBody& body
             depth /= side;
         }
         body.transform.position += std::min(depth, around.radius()) * normal;
-        const Vec3 motion = body.state.velocity + drift;
+        const bool drifts_along = base_of(around.grounds(), touch->ground)
+                                  == base_of(around.grounds(), body.state.ground);
+        const Vec3 motion = body.state.velocity + (drifts_along ? Vec3(0) : drift);
         body.state.velocity -= std::min(glm::dot(motion, normal), 0.0f) * normal;
         if (side > 0.7f) {
             body.state.wall = level_part(normal) / glm::length(level_part(normal));
@@ -288,12 +296,6 @@ void leave_inside(
     if (out != Vec3(0)) {
         body.transform.position += out + around.radius() * normalize_or(out, Vec3(0));
     }
-}
-
-/// What a ground belongs to: one that moves as a whole.
-Entity base_of(std::span<const PlacedGround> grounds, Entity entity) {
-    const PlacedGround* const ground = find_placed(grounds, entity);
-    return ground != nullptr ? ground->base : Entity{};
 }
 
 /// Puts it on the ground below, if it is to stand on it. `dt`: of this part of the step.
@@ -360,10 +362,11 @@ MotorBody step_motor(
     const CharacterMotor& motor, const MoveIntent& intent, const MotorBody& body,
     std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt,
     const std::optional<MotorDrive>& drive) {
-    if (!is_valid(motor, body) || !(dt >= 0)) {
-        return body;
-    }
     MotorBody next = body;
+    next.state.ride = {};
+    if (!is_valid(motor, body) || !(dt >= 0)) {
+        return next;
+    }
     next.jumped = false;
     const Surroundings around(motor, grounds);
     ride(grounds, dt, next);
@@ -373,6 +376,8 @@ MotorBody step_motor(
     next.state.air_time += dt;
     choose_mode(motor, next.state);
     // In the step in which it leaves the ground, that has carried it already.
+    const bool stood = next.state.mode == MotorMode::Stand;
+    const float rise = dt * next.state.drift.y;
     const Vec3 drift = next.state.mode == MotorMode::Fall ? level_part(next.state.drift) : Vec3(0);
     const bool is_driven = drive && is_finite(drive->velocity) && std::isfinite(drive->turn)
                            && next.state.mode == MotorMode::Stand;
@@ -383,6 +388,9 @@ MotorBody step_motor(
         turn_body(motor, intent, dt, next.transform.rotation);
     }
     accelerate(motor, intent, water, dt, next);
+    if (stood && next.state.mode == MotorMode::Fall) {
+        next.transform.position.y -= rise;  // is part of its velocity now
+    }
     if (is_driven && next.state.mode == MotorMode::Stand) {
         next.state.velocity = shortened_to(level_part(drive->velocity), kMotorTopSpeed);
     }
@@ -403,13 +411,20 @@ MotorBody step_motor(
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
     Query<const CharacterMotor, Without<MoveIntent>> aimless,
-    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>> children,
+    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>, Without<Attach>>
+        children,
+    Query<MotorState, With<CharacterMotor>, With<Parent>> held,
     Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
     Query<const Parent> parents, Commands commands) {
     const Placements placements(transforms, parents);
     children.each([&](Entity entity, const CharacterMotor&, const Transform&) {
         commands.set(entity, decompose_affine(placements.world(entity)));
         commands.remove<Parent>(entity);
+    });
+    held.each([](MotorState& state) {
+        state.ground = {};
+        state.ride = {};
+        state.drift = Vec3(0);
     });
     left.each([&](Entity entity, const MotorState&) { commands.remove<MotorState>(entity); });
     bare.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MotorState{}); });

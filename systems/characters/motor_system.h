@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/attach.h"
 #include "ecs/components/motion_match.h"
 #include "ecs/components/motor.h"
 #include "ecs/components/move_intent.h"
@@ -38,12 +39,15 @@ struct MotorDrive {
     std::span<const PlacedGround> grounds, std::span<const WaterSurface> waters, float dt,
     const std::optional<MotorDrive>& drive = {});
 
-/// `children`: are taken off their parents, where these have them now. One that becomes a child
-/// later does not move by itself until it is a root again.
+/// `children`: are taken off their parents, where these have them now. `held`: became children
+/// later, or by Attach; they do not move by themselves until they are roots again, and forget the
+/// ground on which they stood.
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
     Query<const CharacterMotor, Without<MoveIntent>> aimless,
-    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>> children,
+    Query<const CharacterMotor, const Transform, With<Parent>, Without<MotorState>, Without<Attach>>
+        children,
+    Query<MotorState, With<CharacterMotor>, With<Parent>> held,
     Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
     Query<const Parent> parents, Commands commands);
 

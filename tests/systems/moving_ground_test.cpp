@@ -1,5 +1,6 @@
 // Characters on ground that moves: a deck that sails, turns, heaves and rolls.
 
+#include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/attach.h"
 #include "ecs/components/foot_plant.h"
@@ -17,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace limn::moving_ground_test {
@@ -257,11 +259,82 @@ TEST_CASE("moving ground: a child of a deck begins where the deck has it, and wa
     stage.sail(60);
     CHECK(stage.world.get<const Transform>(child).position == Vec3(1, 0, 1));
     REQUIRE(detach(stage.world, child));
-    stage.sail(30);
+    const Vec3 seat = stage.world.get<const Transform>(child).position;
+    stage.sail();
+    CHECK(glm::distance(stage.world.get<const Transform>(child).position, seat) < 0.05f);
+    stage.sail(29);
     CHECK(
         glm::distance(
             stage.on_deck(stage.world.get<const Transform>(child).position), Vec3(1, 0, 1))
         > 0.3f);
+}
+
+TEST_CASE("moving ground: one that is attached from the start stays so until it is detached") {
+    DeckStage<MotorStage> stage(kFerry);
+    const Entity child = stage.world.create(
+        Transform{}, CharacterMotor{}, MoveIntent{.velocity = {0, 0, 1}},
+        Attach{.to = stage.deck, .at = {}, .by = {}});
+    stage.sail(60);
+    CHECK(parent_of(stage.world, child) == stage.deck);
+    CHECK(stage.world.get<const Transform>(child).position == Vec3(0));
+    stage.world.get<Attach>(child).to = {};
+    stage.sail(60);
+    CHECK(parent_of(stage.world, child).is_null());
+    const Vec3 at = stage.on_deck(stage.world.get<const Transform>(child).position);
+    CHECK(std::abs(at.y) < 1e-3f);
+    CHECK(glm::length(at) > 0.6f);
+    CHECK(glm::length(at) < 1.1f);
+}
+
+TEST_CASE("moving ground: one who jumps against a wall of the deck is not thrown back") {
+    DeckStage<MotorStage> stage({.speed = 4});
+    MeshData wall = make_box_mesh({0.6f, 0, -2}, {1, 3, 2});
+    stage.world.resource<Assets>().meshes.push_back(std::move(wall));
+    const Entity side =
+        stage.world.create(Transform{}, MeshInstance{.mesh = {1}, .material = {}}, Walkable{});
+    REQUIRE(set_parent(stage.world, side, stage.deck));
+    stage.go({1.4f, 0, 0});
+    stage.sail(60);
+    const float begin = stage.on_deck(stage.feet()).x;
+    stage.world.get<MoveIntent>(stage.person).jump = true;
+    stage.sail();
+    REQUIRE(stage.state().mode == MotorMode::Fall);
+    float back = 0;
+    for (int i = 0; i < 60; ++i) {
+        stage.sail();
+        back = std::max(back, begin - stage.on_deck(stage.feet()).x);
+    }
+    CHECK(stage.state().mode == MotorMode::Stand);
+    CHECK(back < 0.03f);
+}
+
+TEST_CASE("moving ground: a deck that rises adds its speed to a jump, once") {
+    DeckStage<MotorStage> stage({.heave = 0.4f});
+    stage.sail(180);
+    const float begin = stage.feet().y;
+    stage.world.get<MoveIntent>(stage.person).jump = true;
+    float top = begin;
+    const float before = deck_at(stage.sea, stage.time).position.y;
+    stage.sail();
+    REQUIRE(stage.state().mode == MotorMode::Fall);
+    const float rise = (deck_at(stage.sea, stage.time).position.y - before) / kFrame;
+    REQUIRE(rise > 0.7f);
+    for (int i = 0; i < 60; ++i) {
+        stage.sail();
+        top = std::max(top, stage.feet().y);
+    }
+    const auto gravity = static_cast<float>(kGravity);
+    const float speed = std::sqrt(2 * gravity * CharacterMotor{}.jump) + rise;
+    CHECK(std::abs(top - begin - speed * speed / (2 * gravity)) < 0.003f);
+}
+
+TEST_CASE("moving ground: one whom a deck carries against a ball pushes it at that speed") {
+    DeckStage<MotorStage> stage({.speed = 6});
+    stage.sail(60);
+    const Entity ball = stage.world.create(
+        Transform{.position = stage.feet() + Vec3(0.5f, 1, 0)}, LooseBody{.mass = 0.001f});
+    stage.sail();
+    CHECK(stage.world.get<const LooseState>(ball).velocity.x > 5.5f);
 }
 
 TEST_CASE("moving ground: a motor that is removed takes its state along") {
