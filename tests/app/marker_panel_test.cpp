@@ -10,6 +10,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/render_view.h"
+#include "tests/app/run_program.h"
 #include "tests/near.h"
 #include "tests/support.h"
 #include "tests/technique.h"

@@ -69,7 +69,7 @@ TEST_CASE("bad level: the error for a misplaced or misnamed key says where it be
          "(did you mean spacing?)"},
         {R"({"meshes": {"m": {"make": "bxo"}}})",
          "expected one of arch bar boat body_part boulder box"},
-        {R"({"meshes": {"m": {}}})", R"("make": one of arch bar boat body_part box)"},
+        {R"({"meshes": {"m": {}}})", R"("make": one of arch bar boat body_part boulder box)"},
         {R"({"images": {"i": {"make": "wod"}}})", "expected one of "},
         {R"({"events": [{"time": 1}]})",
          R"(found the key "time", expected "at": seconds since the start of the level)"},

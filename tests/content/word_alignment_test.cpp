@@ -108,10 +108,8 @@ TEST_CASE(
     const std::vector<float> usual = usual_durations(sounds);
     REQUIRE(usual.size() == voiced.size());
     std::vector<double> lengths;
-    double total = 0;
     for (std::size_t i = 0; i < usual.size(); ++i) {
         lengths.push_back(double{usual[i]} * (i % 3 == 0 ? 1.7 : i % 3 == 1 ? 0.6 : 1.0));
-        total += lengths.back();
     }
     const Recording voice = speak(voiced, lengths);
     const std::vector<float> ends = align_sounds(voice, 0, voice.duration(), voiced, usual);

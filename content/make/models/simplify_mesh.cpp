@@ -74,6 +74,51 @@ std::vector<Vec3> spread_limbs(const MeshData& mesh, float spread) {
     return positions;
 }
 
+/// Which parts of a body, by their main joints, are near each other: they share a triangle, or both
+/// share one with the same third part. A triangle of two others would be a web between limbs.
+class PartsNearby {
+  public:
+    explicit PartsNearby(const MeshData& mesh) : mesh_(mesh) {
+        if (mesh.skin.empty()) {
+            return;
+        }
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            count_ = std::max<std::size_t>(count_, main_joint(mesh.skin, v) + 1);
+        }
+        std::vector<bool> touch(count_ * count_, false);
+        for_pairs(mesh.indices, [&](std::size_t pair) { touch[pair] = true; });
+        near_ = touch;
+        for (std::size_t a = 0; a < count_; ++a) {
+            for (std::size_t b = 0; b < count_; ++b) {
+                for (std::size_t c = 0; touch[a * count_ + b] && c < count_; ++c) {
+                    near_[a * count_ + c] = near_[a * count_ + c] || touch[b * count_ + c];
+                }
+            }
+        }
+    }
+    [[nodiscard]] std::size_t count_webs(const std::vector<std::uint32_t>& indices) const {
+        std::size_t webs = 0;
+        for_pairs(indices, [&](std::size_t pair) { webs += near_[pair] ? 0 : 1; });
+        return webs;
+    }
+
+  private:
+    /// Of each triangle, the joints of all pairs of corners.
+    template <typename Visit>
+    void for_pairs(const std::vector<std::uint32_t>& indices, Visit&& visit) const {
+        for (std::size_t i = 0; count_ > 0 && i < indices.size(); ++i) {
+            const std::size_t a = main_joint(mesh_.skin, indices[i]);
+            const std::size_t b = main_joint(mesh_.skin, indices[i % 3 == 2 ? i - 2 : i + 1]);
+            visit(a * count_ + b);
+            visit(b * count_ + a);
+        }
+    }
+
+    const MeshData& mesh_;
+    std::size_t count_ = 0;
+    std::vector<bool> near_;
+};
+
 /// Positions of which those of dark vertices are closer to the center.
 std::vector<Vec3> sunk_by_color(const MeshData& mesh, float depth) {
     std::vector<Vec3> positions = mesh.positions;
@@ -118,10 +163,12 @@ void merge_mesh(MeshData& mesh, std::size_t triangles) {
     }
     constexpr float kAnyError = 1.0f;
     constexpr float kSmallLoss = 0.1f;  // of the size
-    constexpr float kSpreads[] = {4.0f, 3.0f, 2.0f, 1.0f, 0.0f};
+    constexpr float kSpreads[] = {4.0f, 3.0f, 2.0f, 6.0f, 1.0f, 0.0f};
     const Vec3 size = extent_of(mesh, mesh.indices);
+    const PartsNearby parts(mesh);
     std::vector<std::uint32_t> best;
-    float least_lost = std::numeric_limits<float>::max();
+    std::pair<std::size_t, float> least = {
+        std::numeric_limits<std::size_t>::max(), 0.0f};  // webs, extent lost
     for (const float spread : kSpreads) {
         const std::vector<Vec3> positions = spread_limbs(mesh, spread);
         std::vector<std::uint32_t> indices(mesh.indices.size());
@@ -130,11 +177,14 @@ void merge_mesh(MeshData& mesh, std::size_t triangles) {
             positions.size(), sizeof(Vec3), 3 * triangles, kAnyError));
         const Vec3 lost = size - extent_of(mesh, indices);
         const float loss = std::max({lost.x, lost.y, lost.z});
-        if (loss < least_lost) {
-            least_lost = loss;
+        const bool is_whole = loss < kSmallLoss * std::max({size.x, size.y, size.z});
+        const std::pair<std::size_t, float> faults = {
+            parts.count_webs(indices), is_whole ? 0.0f : loss};
+        if (faults < least) {
+            least = faults;
             best = std::move(indices);
         }
-        if (loss < kSmallLoss * std::max({size.x, size.y, size.z})) {
+        if (faults.first == 0 && is_whole) {
             break;  // limbs far apart have the best shapes
         }
     }
