@@ -208,8 +208,8 @@ std::vector<float> align_sounds(
     }
     ends.back() = end;
     const auto frames = static_cast<std::size_t>(std::max(0.0f, end - begin) / kHop);
-    constexpr std::size_t kMostFrames = 6000;  // 30 s without a pause: the search is quadratic
-    if (frames < kMinFrames * sounds.size() || frames > kMostFrames) {
+    constexpr std::size_t kMaxFrames = 6000;  // 30 s without a pause: the search is quadratic
+    if (frames < kMinFrames * sounds.size() || frames > kMaxFrames) {
         return ends;
     }
     const std::vector<HeardFrame> heard = hear(recording, begin, frames);
