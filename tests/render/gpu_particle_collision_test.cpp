@@ -55,12 +55,7 @@ TEST_CASE("gpu particles: they bounce off planes, spheres and boxes where those 
 }
 
 TEST_CASE("gpu particles: at 60 m/s none gets through a wall of a millimeter") {
-    ParticleEmitter emitter = fountain();
-    emitter.shape = EmitterShape::Ball;
-    emitter.size = Vec3(0.5f);
-    emitter.speed = 60;
-    emitter.speed_spread = 0;
-    emitter.cone = kPi;
+    const ParticleEmitter emitter = outburst(60);
     ParticleMotion motion;
     motion.gravity = 0;
     Executors both(emitter, motion);

@@ -202,12 +202,7 @@ TEST_CASE("gpu shapes: a mesh that is deformed is hit where it is in each step")
 }
 
 TEST_CASE("gpu shapes: at 60 m/s none gets out of a box of triangles, nor through a thin ridge") {
-    ParticleEmitter emitter = fountain();
-    emitter.shape = EmitterShape::Ball;
-    emitter.size = Vec3(0.5f);
-    emitter.speed = 60;
-    emitter.speed_spread = 0;
-    emitter.cone = kPi;
+    const ParticleEmitter emitter = outburst(60);
     ParticleMotion motion;
     motion.gravity = 0;
     for (const float radius : {0.0f, 0.02f}) {

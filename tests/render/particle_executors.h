@@ -136,4 +136,15 @@ inline ParticleEmitter fountain() {
     return emitter;
 }
 
+/// Out of a ball in all directions, at one speed [m/s].
+inline ParticleEmitter outburst(float speed) {
+    ParticleEmitter emitter = fountain();
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = Vec3(0.5f);
+    emitter.speed = speed;
+    emitter.speed_spread = 0;
+    emitter.cone = kPi;
+    return emitter;
+}
+
 }  // namespace limn::test
