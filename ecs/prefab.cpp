@@ -78,6 +78,14 @@ Prefab make_prefab(World& world, Entity root) {
     return prefab;
 }
 
+void fill(World& world, const Prefab& prefab, std::span<const Entity> entities) {
+    LIMN_CHECK(entities.size() == prefab.entities.size());
+    CommandBuffer buffer;
+    record_copy(Commands(buffer), prefab, entities);
+    CommandBuffer* const buffers[] = {&buffer};
+    apply_commands(world, buffers);
+}
+
 std::vector<Entity> spawn(World& world, const Prefab& prefab, std::size_t count, Entity parent) {
     const std::size_t size = prefab.entities.size();
     const std::vector<Entity> entities = world.create_many(count * size);

@@ -5,6 +5,7 @@
 #include "ecs/hierarchy.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -30,6 +31,9 @@ struct Prefab {
 /// Copies `root` and its descendants, except the root's Parent and components that ComponentTraits
 /// exclude (saved, in_prefabs) or that cannot be copied. References to outside entities are kept.
 [[nodiscard]] Prefab make_prefab(World& world, Entity root);
+
+/// Gives existing entities, one for each of the prefab's, its components.
+void fill(World& world, const Prefab& prefab, std::span<const Entity> entities);
 
 /// Creates `count` copies in one batch, as children of `parent` unless that is null. Returns their
 /// roots. The entities of one copy are created after those of the previous copy.

@@ -35,7 +35,8 @@ Affine affine_of(const Transform& transform) {
     return affine_from(transform.position, transform.rotation, transform.scale);
 }
 
-/// Of the current transforms, whatever was drawn last.
+}  // namespace
+
 Affine world_from_entity(const World& world, Entity entity) {
     Affine result;
     for (; !entity.is_null(); entity = parent_of(world, entity)) {
@@ -45,8 +46,6 @@ Affine world_from_entity(const World& world, Entity entity) {
     }
     return result;
 }
-
-}  // namespace
 
 Transform attached_transform(
     const AttachPoint& parent, const AttachPoint& child, const Vec3& child_scale, bool facing) {

@@ -30,6 +30,9 @@ class World;
     World& world, Entity parent, std::string_view parent_point, Entity child,
     std::string_view child_point, bool facing = false);
 
+/// Of the transforms as they are now, whatever was drawn last.
+[[nodiscard]] Affine world_from_entity(const World& world, Entity entity);
+
 /// Makes `child` a root that stays where it is in the world. False if it has no parent.
 [[nodiscard]] bool detach(World& world, Entity child);
 

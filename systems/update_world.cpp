@@ -48,6 +48,7 @@
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
 #include "systems/particles/billboard_system.h"
+#include "systems/particles/emitter_restart.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/gpu_shapes.h"
 #include "systems/particles/height_image_system.h"
@@ -213,6 +214,7 @@ void add_water_systems(SystemList& systems) {
 }
 
 void add_particle_systems(SystemList& systems) {
+    systems.add<watch_emitter_seeds>(Events, AtStart);
     systems.add<update_billboards>(Events);
     systems.add<add_particle_pools>(Create, Both);
     systems.add<add_gpu_particles>(Create, Both);

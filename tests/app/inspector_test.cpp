@@ -13,6 +13,7 @@
 #include "ecs/schedule.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
+#include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <imgui.h>
@@ -112,6 +113,37 @@ TEST_CASE("inspector: looking at every component changes nothing") {
             ImGui::End();
         });
     }
+}
+
+TEST_CASE(
+    "inspector: what is pasted is selected; what is deleted is not shown, and comes back by undo"
+    * technique("engine.cut-copy-paste")) {
+    const OffscreenHud hud;
+    World world;
+    register_all_components();
+    world.insert_resource(Assets{});
+    const Entity post = world.create(Name{"post"}, Transform{});
+    const Entity lamp = world.create(Name{"lamp"}, Transform{}, Parent{post});
+    Inspector inspector;
+    inspector.open = true;
+    inspector.select(lamp);
+    const auto text = [&] {
+        return hud.text([&] { inspector.draw(hud.style, world, Schedule()); });
+    };
+    CHECK(inspector.run(world, Inspector::TreeCommand::Duplicate) == "lamp 2: copied");
+    CHECK(inspector.selected() != lamp);
+    CHECK(parent_of(world, inspector.selected()) == post);
+    CHECK(text().find("lamp 2") != std::string::npos);
+    CHECK(inspector.edit_count() == 1);  // though it is two changes
+    inspector.select(post);
+    CHECK(inspector.run(world, Inspector::TreeCommand::Delete) == "post: delete");
+    CHECK(inspector.selected().is_null());
+    CHECK(text().find("lamp") == std::string::npos);
+    inspector.undo_stack().undo(world);
+    inspector.select(post);
+    CHECK(text().find("lamp 2") != std::string::npos);
+    CHECK(inspector.run(world, Inspector::TreeCommand::Paste).starts_with("paste: nothing"));
+    CHECK(inspector.take_message().empty());
 }
 
 TEST_CASE("inspector: a drag of a slider sets the component and is one step of undo") {

@@ -3,6 +3,7 @@
 #include "ecs/components/all.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/world.h"
+#include "systems/particles/emitter_restart.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>

@@ -8,6 +8,7 @@
 #include "ecs/components/post.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/field_watch.h"
 #include "ecs/world.h"
 #include "tests/content/level_text.h"
 #include "tests/support.h"
@@ -156,6 +157,21 @@ TEST_CASE(
     CHECK(
         error_of("Bone.001")
         == "--set Bone.001: found no component, expected ENTITY.COMPONENT.FIELD");
+}
+
+TEST_CASE("set: handlers are called once before and after, and not for a value that is refused") {
+    World world;
+    spawn_into(world, R"({"entities": [{"name": "lamp", "point_light": {"intensity": 2}}]})");
+    std::vector<float> seen;
+    watch_field<PointLight>(world, "intensity", [&](World& there, const FieldNote& note) {
+        seen.push_back(std::as_const(there).get<PointLight>(note.entity).intensity);
+    });
+    for (const char* const refused : {"-1", "bright", "[1, 2]", "1e999"}) {
+        CHECK_FALSE(set_value(world, "lamp.point_light.intensity", refused).ok());
+    }
+    CHECK(seen.empty());
+    CHECK(set_value(world, "lamp.point_light.intensity", "3").ok());
+    CHECK(seen == std::vector<float>{2, 3});
 }
 
 }  // namespace limn::set_value_test

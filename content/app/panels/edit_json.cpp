@@ -251,16 +251,109 @@ class CopiedTree {
     std::unordered_set<std::string> used_;
 };
 
+const ComponentInfo& edited_info(const Edit& edit) {
+    return edit.before.is_empty() ? edit.after.info() : edit.before.info();
+}
+
+std::string name_or_number(const World& world, Entity entity) {
+    const Name* const name = name_of(world, entity);
+    return name != nullptr ? '"' + name->text + '"' : fmt::format("entity {}", entity.index);
+}
+
 /// The value before its first edit.
 const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
     const auto same = [&](const Edit& other) {
-        const auto info = [](const Edit& e) {
-            return &(e.before.is_empty() ? e.after.info() : e.before.info());
-        };
-        return other.part == edit.part && other.entity == edit.entity
-               && other.material == edit.material && info(other) == info(edit);
+        return !other.tree && other.part == edit.part && other.entity == edit.entity
+               && other.material == edit.material && &edited_info(other) == &edited_info(edit);
     };
     return *std::find_if(edits.begin(), edits.end(), same);
+}
+
+/// Entities that the edits made, deleted and moved.
+struct TreeChanges {
+    std::vector<Entity> made;          ///< roots of subtrees
+    std::vector<std::string> deleted;  ///< names of roots
+    std::vector<Entity> moved;         ///< to another parent
+    std::unordered_set<Entity> own;    ///< all of the subtrees that were made or deleted
+};
+
+std::string root_name(const EditedTree& tree) {
+    for (const AnyComponent& component : tree.components.entities.front().components) {
+        if (&component.info() == &component_info<Name>()) {
+            return component.as<Name>().text;
+        }
+    }
+    return {};
+}
+
+TreeChanges tree_changes(const World& world, std::span<const Edit> edits) {
+    TreeChanges changes;
+    for (const Edit& edit : edits) {
+        if (!edit.tree) {
+            continue;
+        }
+        const Entity root = edit.tree->entities.front();
+        if (!edit.tree->made) {
+            if (!changes.own.contains(root)) {
+                changes.deleted.push_back(root_name(*edit.tree));
+            }
+        } else if (world.alive(root) && !world.components_of(root).empty()) {
+            changes.made.push_back(root);
+        }
+        changes.own.insert(edit.tree->entities.begin(), edit.tree->entities.end());
+    }
+    for (const Edit& edit : edits) {
+        const bool moves = edit.part == LevelPart::Component && !edit.tree
+                           && &edited_info(edit) == &component_info<Parent>();
+        if (moves && !changes.own.contains(edit.entity)
+            && std::ranges::find(changes.moved, edit.entity) == changes.moved.end()) {
+            changes.moved.push_back(edit.entity);
+        }
+    }
+    return changes;
+}
+
+/// Writes what was made below its parent, and destroys by an event what was deleted. What was moved
+/// has to be moved in the file: returns a note for it.
+std::string add_tree_changes(
+    World& world, const TreeChanges& changes, JsonValue& entities, JsonValue& destroyed) {
+    const Hierarchy& tree = hierarchy(world);
+    for (const Entity root : changes.made) {
+        const Entity parent = parent_of(world, root);
+        if (changes.own.contains(parent)) {
+            continue;  // written with it
+        }
+        const Name* const above = name_of(world, parent);
+        JsonValue no_copies = json_object();
+        JsonValue* const target =
+            above != nullptr ? patched(world, entities, no_copies, parent, *above) : nullptr;
+        JsonValue object = CopiedTree(world, tree, root).object_of(root);
+        if (target == nullptr) {
+            entities.items.push_back(std::move(object));
+            continue;
+        }
+        JsonValue& children = member(*target, "children");
+        if (children.items.empty()) {
+            children = json_array();
+        }
+        children.items.push_back(std::move(object));
+    }
+    std::string note;
+    for (const std::string& name : changes.deleted) {
+        if (name.empty()) {
+            note = "  // without the entities deleted that have no name: delete them in the file";
+        } else {
+            destroyed.items.push_back(json_of(std::string_view(name)));
+        }
+    }
+    for (const Entity entity : changes.moved) {
+        const Entity parent = parent_of(world, entity);
+        note += fmt::format(
+            "  // move {} {}", name_or_number(world, entity),
+            parent.is_null() ? "out of its parent's children"
+                             : "to the children of " + name_or_number(world, parent));
+    }
+    return note;
 }
 
 }  // namespace
@@ -301,14 +394,22 @@ std::string edit_note(const World& world, Entity entity) {
                 : "its edits cannot be copied; edit the prefab or the repeat in the level's file");
 }
 
-std::string edits_as_json(const World& world, std::span<const Edit> edits) {
+std::string edits_as_json(World& world, std::span<const Edit> edits) {
     JsonValue patch = json_object();
     JsonValue entities = json_array();
     JsonValue copies = json_object();
     bool left_out = false;
     const NameProvider names = make_name_provider(world);
+    const TreeChanges trees = tree_changes(world, edits);
     for (const Edit& edit : edits) {
-        const ComponentInfo& info = edit.before.is_empty() ? edit.after.info() : edit.before.info();
+        if (edit.tree) {
+            continue;
+        }
+        const ComponentInfo& info = edited_info(edit);
+        if (edit.part == LevelPart::Component
+            && (trees.own.contains(edit.entity) || info.id == component_id<Parent>)) {
+            continue;
+        }
         const AnyComponent& first = first_edit_of(edits, edit).before;
         const JsonValue before =
             first.is_empty() ? json_object() : write_component(info, first.data(), names);
@@ -347,16 +448,23 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
             break;  // only in files
         }
     }
+    JsonValue destroyed = json_array();
+    const std::string note = add_tree_changes(world, trees, entities, destroyed);
     if (!entities.items.empty()) {
         set_member(patch, "entities", std::move(entities));
     }
-    if (!copies.members.empty()) {
+    if (!copies.members.empty() || !destroyed.items.empty()) {
         JsonValue event = json_object();
         set_member(event, "at", json_of(0.0));
-        set_member(event, "set", std::move(copies));
+        if (!copies.members.empty()) {
+            set_member(event, "set", std::move(copies));
+        }
+        if (!destroyed.items.empty()) {
+            set_member(event, "destroy", std::move(destroyed));
+        }
         set_member(patch, "events", json_array({std::move(event)}));
     }
-    return write_json(patch)
+    return write_json(patch) + note
            + (left_out ? "  // without edits of children of copies: a level cannot refer to those"
                        : "");
 }

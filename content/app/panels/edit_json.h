@@ -30,7 +30,8 @@ component_as_json(const World& world, const ComponentInfo& info, const void* val
 /// The edited fields of components, resources and materials with their current values, as a patch
 /// of the level's file. Children are in the "nodes" of their outermost ancestor, copies made by
 /// `repeat` in an event. Unnamed entities and children of copies are left out; removed components
-/// are null.
-[[nodiscard]] std::string edits_as_json(const World& world, std::span<const Edit> edits);
+/// are null. What was made is below its parent, what was deleted in an event; a comment says what
+/// to move.
+[[nodiscard]] std::string edits_as_json(World& world, std::span<const Edit> edits);
 
 }  // namespace limn

@@ -48,15 +48,6 @@ std::string describe_drops(const World& world) {
         dropped == 1 ? "" : "s", emitters, emitters == 1 ? "" : "s");
 }
 
-void restart_emitter(World& world, Entity emitter) {
-    if (world.has<ParticlePool>(emitter)) {
-        world.get<ParticlePool>(emitter) = {};
-    }
-    if (world.has<GpuParticles>(emitter)) {
-        world.get<GpuParticles>(emitter) = {};
-    }
-}
-
 std::uint32_t next_seed(std::uint32_t seed) {
     const std::uint32_t next = seed * 1664525u + 1013904223u;  // Knuth; full period
     return next != 0 ? next : 1;

@@ -25,9 +25,6 @@ struct EmitterCounts {
 /// "12 particles of 2 emitters dropped: ..." for the status line; empty: none.
 [[nodiscard]] std::string describe_drops(const World& world);
 
-/// Restarts the emitter in the next step, prewarmed if it is set so.
-void restart_emitter(World& world, Entity emitter);
-
 /// Another nonzero seed, from a full-period sequence.
 [[nodiscard]] std::uint32_t next_seed(std::uint32_t seed);
 

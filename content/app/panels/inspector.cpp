@@ -8,6 +8,7 @@
 #include "content/load/level/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
+#include "ecs/base/text.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/furrows.h"
 #include "ecs/components/motion_graph.h"
@@ -18,6 +19,7 @@
 #include "ecs/world.h"
 #include "render/material/shading_fields.h"
 #include "render/material/shading_models.h"
+#include "systems/particles/emitter_restart.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -54,6 +56,11 @@ bool matches(const ComponentInfo& info, std::string_view part) {
               });
 }
 
+/// What was deleted has no components.
+bool exists(const World& world, Entity entity) {
+    return world.alive(entity) && !world.components_of(entity).empty();
+}
+
 /// A search field as wide as the panel.
 void draw_search(const char* hint, std::string& text) {
     ImGui::SetNextItemWidth(-1);
@@ -79,6 +86,7 @@ bool is_editable(const ComponentInfo& info) {
 
 void Inspector::reset() {
     undo_.clear();
+    subtrees_.reset();
     selected_ = noted_ = {};
     rows_.clear();
     rows_built_at_ = -1.0;
@@ -89,8 +97,43 @@ void Inspector::reset() {
     storage_.reset();
 }
 
-std::string Inspector::edits_as_json(const World& world) const {
+std::size_t Inspector::edit_count() const {
+    return static_cast<std::size_t>(std::ranges::count(undo_.done(), false, &Edit::joined));
+}
+
+std::string Inspector::edits_as_json(World& world) const {
     return limn::edits_as_json(world, undo_.done());
+}
+
+std::string Inspector::run(World& world, TreeCommand command) {
+    rows_built_at_ = -1.0;
+    const auto edit = [&]() -> Result<std::string> {
+        switch (command) {
+        case TreeCommand::Cut:
+            return subtrees_.cut(world, undo_, selected_);
+        case TreeCommand::Copy:
+            return subtrees_.copy(world, selected_);
+        case TreeCommand::Paste:
+            return subtrees_.paste(world, undo_, selected_, KeptPlace::World);
+        case TreeCommand::PasteLocal:
+            return subtrees_.paste(world, undo_, selected_, KeptPlace::Local);
+        case TreeCommand::Duplicate:
+            return subtrees_.duplicate(world, undo_, selected_);
+        case TreeCommand::Delete:
+            return subtrees_.remove(world, undo_, selected_);
+        }
+        return fail("no command");
+    };
+    const Result<std::string> done = edit();
+    if (!done) {
+        return done.error().message;
+    }
+    if (command == TreeCommand::Delete) {
+        selected_ = {};
+    } else if (command != TreeCommand::Cut && command != TreeCommand::Copy) {
+        select(subtrees_.pasted());
+    }
+    return *done;
 }
 
 void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedule) {
@@ -132,7 +175,7 @@ void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedu
     ImGui::End();
 }
 
-void Inspector::draw_edits(const World& world) {
+void Inspector::draw_edits(World& world) {
     const bool has_edits = edit_count() > 0;
     ImGui::BeginDisabled(!has_edits);
     if (ImGui::SmallButton("Copy the edits as JSON")) {
@@ -154,7 +197,7 @@ void Inspector::draw_entities(const HudStyle& style, World& world) {
         || was_empty != search_.empty()) {
         rows_built_at_ = -1.0;
     }
-    const bool has_selected = world.alive(selected_);
+    const bool has_selected = exists(world, selected_);
     const float room = ImGui::GetContentRegionAvail().y;
     ImGui::BeginChild("##tree", {0, has_selected ? 0.36f * room : 0.0f});
     draw_tree(style, world);
@@ -183,7 +226,11 @@ void Inspector::rebuild_rows(World& world) {
     rows_.clear();
     const Hierarchy& tree = hierarchy(world);
     std::vector<Entity> entities;
-    world.each_entity([&](Entity entity) { entities.push_back(entity); });
+    world.each_entity([&](Entity entity) {
+        if (exists(world, entity)) {
+            entities.push_back(entity);
+        }
+    });
     // As in the level's file, which was spawned in order.
     std::sort(
         entities.begin(), entities.end(), [](Entity a, Entity b) { return a.index < b.index; });
@@ -246,6 +293,11 @@ void Inspector::draw_tree(const HudStyle& style, World& world) {
             if (ImGui::Selectable(label.c_str(), row.entity == selected_) && alive) {
                 selected_ = row.entity;
             }
+            if (alive && ImGui::BeginPopupContextItem("##row menu")) {
+                selected_ = row.entity;
+                draw_tree_menu(world);
+                ImGui::EndPopup();
+            }
             const Entity parent = alive ? parent_of(world, row.entity) : Entity{};
             if (!search_.empty() && !parent.is_null()) {
                 ImGui::SameLine();
@@ -284,6 +336,17 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
         ImGui::SameLine();
         ImGui::TextColored(kHudDim, "copied");
     }
+    ImGui::SameLine();
+    if (ImGui::Button("Edit ...")) {
+        ImGui::OpenPopup("##tree menu");
+    }
+    if (ImGui::BeginPopup("##tree menu")) {
+        draw_tree_menu(world);
+        ImGui::EndPopup();
+    }
+    if (!exists(world, selected_)) {
+        return;
+    }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);
     std::vector<ComponentId> components = world.components_of(selected_);
@@ -292,10 +355,35 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
         return std::tuple(is_internal(info), info.name != "transform", std::string_view(info.name));
     });
     for (const ComponentId id : components) {
-        if (!world.alive(selected_)) {
+        if (!exists(world, selected_)) {
             return;
         }
         draw_component(style, world, component_info(id));
+    }
+}
+
+void Inspector::draw_tree_menu(World& world) {
+    struct Item {
+        const char* label;
+        const char* keys;
+        TreeCommand command;
+        const char* tip;
+    };
+    static constexpr Item kItems[] = {
+        {"Cut", "Ctrl X", TreeCommand::Cut, "makes it a root, which the next paste moves"},
+        {"Copy", "Ctrl C", TreeCommand::Copy, "with its children"},
+        {"Paste", "Ctrl V", TreeCommand::Paste, "below it; what was cut stays where it is"},
+        {"Paste, keep the transform", "Ctrl Shift V", TreeCommand::PasteLocal,
+         "below it, at the same place relative to its parent"},
+        {"Duplicate", "Ctrl D", TreeCommand::Duplicate, "a copy beside it"},
+        {"Delete", "Ctrl Del", TreeCommand::Delete, "with its children"}};
+    for (const Item& item : kItems) {
+        if (ImGui::MenuItem(item.label, item.keys)) {
+            message_ = run(world, item.command);
+        }
+        if (ImGui::IsItemHovered()) {
+            ImGui::SetTooltip("%s", item.tip);
+        }
     }
 }
 
@@ -388,9 +476,8 @@ void Inspector::draw_emitter(World& world) {
         std::uint32_t& seed = edit.after.as<ParticleEmitter>().seed;
         seed = next_seed(seed);
         edit.label = fmt::format("{}: particle_emitter.seed", entity_label(world, selected_));
-        apply_edit_value(world, edit, edit.after);
+        apply_edit_value(world, edit, edit.after);  // restarts it (emitter_restart.h)
         undo_.record(std::move(edit));
-        restart_emitter(world, selected_);
     }
     const EmitterCounts counts = count_particles(world, selected_);
     ImGui::TextColored(

@@ -2,6 +2,7 @@
 
 #include "content/app/panels/field_widgets.h"
 #include "content/app/panels/storage_panel.h"
+#include "content/app/panels/subtree_edits.h"
 #include "content/app/panels/undo.h"
 #include "ecs/any_component.h"
 #include "ecs/entity.h"
@@ -36,9 +37,15 @@ class Inspector {
     [[nodiscard]] UndoStack& undo_stack() { return undo_; }
     [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
     /// Edits that leaving the level would lose.
-    [[nodiscard]] std::size_t edit_count() const { return undo_.undo_count(); }
+    [[nodiscard]] std::size_t edit_count() const;
     /// Those edits as a patch of the level (edit_json.h).
-    [[nodiscard]] std::string edits_as_json(const World& world) const;
+    [[nodiscard]] std::string edits_as_json(World& world) const;
+    /// What the keys and buttons for whole entities do to the selected one.
+    enum class TreeCommand : std::uint8_t { Cut, Copy, Paste, PasteLocal, Duplicate, Delete };
+    /// Returns a line for the user: what was done, or why not.
+    std::string run(World& world, TreeCommand command);
+    /// What the menu of a whole entity did since the last call, as run() says; "" for nothing.
+    [[nodiscard]] std::string take_message() { return std::exchange(message_, {}); }
     /// Whether "Focus" was pressed since the last call.
     [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
     /// Whether "Step" of an emitter was pressed since the last call.
@@ -64,9 +71,11 @@ class Inspector {
     void draw_tree(const HudStyle& style, World& world);
     void draw_selected(const HudStyle& style, World& world);
     /// The number of edits, and a button that copies them.
-    void draw_edits(const World& world);
+    void draw_edits(World& world);
     void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
+    /// Cut, copy, paste ... of the selected entity, as items of a menu.
+    void draw_tree_menu(World& world);
     /// Buttons and counts above the fields of a selected particle emitter.
     void draw_emitter(World& world);
     /// Events as buttons, state, weights of clips and layers of a selected motion graph.
@@ -83,6 +92,7 @@ class Inspector {
         const void* value, const std::string& label, const FoldedFields& folded = {});
 
     UndoStack undo_;
+    SubtreeEditor subtrees_;
     Entity selected_;
     Entity copied_;     ///< whose JSON was copied last
     Entity noted_;      ///< of note_
@@ -90,6 +100,7 @@ class Inspector {
     std::string search_;
     std::string resource_search_;
     std::string material_search_;
+    std::string message_;  ///< for take_message()
     bool focus_ = false;
     bool step_ = false;
     bool furrows_ = false;

@@ -28,7 +28,7 @@ std::function<void()> LeaveDialog::take_accepted() {
     return std::exchange(accepted_, nullptr);
 }
 
-void LeaveDialog::draw(const HudStyle& style, const Inspector& inspector, const World& world) {
+void LeaveDialog::draw(const HudStyle& style, const Inspector& inspector, World& world) {
     if (!is_open()) {
         return;
     }

@@ -23,7 +23,7 @@ class LeaveDialog {
     [[nodiscard]] std::function<void()> take_accepted();
 
     /// Draws the question with the number of edits and a button that copies them as JSON.
-    void draw(const HudStyle& style, const Inspector& inspector, const World& world);
+    void draw(const HudStyle& style, const Inspector& inspector, World& world);
 
   private:
     std::string question_;

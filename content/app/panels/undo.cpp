@@ -1,8 +1,10 @@
 #include "content/app/panels/undo.h"
 
 #include "ecs/components/surface.h"
+#include "ecs/field_watch.h"
 #include "ecs/world.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace limn {
@@ -16,12 +18,11 @@ bool apply_to_component(World& world, const Edit& edit, const AnyComponent& valu
         const AnyComponent& other = edit.before.is_empty() ? edit.after : edit.before;
         world.remove(edit.entity, other.info().id);
     } else {
-        // Adding enables the component, but replacing its value must keep it disabled.
         const ComponentId id = value.info().id;
-        const bool is_disabled = world.has(edit.entity, id) && !world.is_enabled(edit.entity, id);
-        world.add_copy(edit.entity, id, value.data());
-        if (is_disabled) {
-            world.set_enabled(edit.entity, id, false);
+        if (world.has(edit.entity, id)) {
+            write_fields(world, edit.entity, value);
+        } else {
+            world.add_copy(edit.entity, id, value.data());
         }
     }
     return true;
@@ -51,13 +52,37 @@ bool apply_to_material(World& world, std::uint32_t index, const AnyComponent& va
     return true;
 }
 
+/// Gives the entities their components, or takes all that they have. False if one is destroyed.
+bool apply_tree(World& world, const EditedTree& tree, bool redo) {
+    if (!std::ranges::all_of(tree.entities, [&](Entity one) { return world.alive(one); })) {
+        return false;
+    }
+    if (tree.made == redo) {
+        fill(world, tree.components, tree.entities);
+    } else {
+        strip(world, tree.entities);
+    }
+    return true;
+}
+
 bool is_target(const Edit& edit, const LevelChange& change) {
+    if (edit.tree) {
+        return false;
+    }
     const AnyComponent& value = edit.before.is_empty() ? edit.after : edit.before;
     return edit.part == change.part && edit.entity == change.entity
            && edit.material == change.material && &value.info() == &change.now.info();
 }
 
 }  // namespace
+
+void strip(World& world, std::span<const Entity> entities) {
+    for (const Entity entity : entities) {
+        for (const ComponentId id : world.components_of(entity)) {
+            world.remove(entity, id);
+        }
+    }
+}
 
 void record_edit(
     World& world, UndoStack& undo, Edit edit, AnyComponent after, const std::string& what,
@@ -103,31 +128,42 @@ void UndoStack::extend(AnyComponent after) {
     edits_.back().after = std::move(after);
 }
 
+bool UndoStack::step(World& world, bool redo) {
+    const std::size_t at = redo ? done_ : done_ - 1;
+    const Edit& edit = edits_[at];
+    const bool applied = edit.tree ? apply_tree(world, *edit.tree, redo)
+                                   : apply_edit_value(world, edit, redo ? edit.after : edit.before);
+    if (!applied) {
+        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    done_ = redo && applied ? at + 1 : at;
+    return applied;
+}
+
 std::string UndoStack::undo(World& world) {
     ++revision_;
-    while (done_ > 0) {
-        const Edit& edit = edits_[done_ - 1];
-        if (apply_edit_value(world, edit, edit.before)) {
-            --done_;
-            return edit.label;
+    std::string label;
+    for (bool more = true; more && done_ > 0;) {
+        const bool joined = edits_[done_ - 1].joined;
+        const std::string own = edits_[done_ - 1].label;
+        if (step(world, false)) {
+            label = own;
         }
-        --done_;
-        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
+        more = joined || label.empty();
     }
-    return {};
+    return label;
 }
 
 std::string UndoStack::redo(World& world) {
     ++revision_;
-    while (done_ < edits_.size()) {
-        const Edit& edit = edits_[done_];
-        if (apply_edit_value(world, edit, edit.after)) {
-            ++done_;
-            return edit.label;
+    std::string label;
+    while (done_ < edits_.size() && (label.empty() || edits_[done_].joined)) {
+        const std::string own = edits_[done_].label;
+        if (step(world, true) && label.empty()) {
+            label = own;
         }
-        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
     }
-    return {};
+    return label;
 }
 
 void UndoStack::adopt(std::span<const LevelChange> changes) {
@@ -145,8 +181,8 @@ void UndoStack::adopt(std::span<const LevelChange> changes) {
                 }
             }
         }
-        const bool has_effect =
-            edit.before.is_empty() || edit.after.is_empty() || !same_value(edit.before, edit.after);
+        const bool has_effect = edit.tree || edit.before.is_empty() || edit.after.is_empty()
+                                || !same_value(edit.before, edit.after);
         if (has_effect) {
             kept.push_back(std::move(edit));
             done += i < done_ ? 1 : 0;

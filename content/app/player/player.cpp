@@ -162,6 +162,9 @@ Status Player::run() {
             step_once_ = true;
             paused_ = true;
         }
+        if (const std::string message = inspector_.take_message(); !message.empty()) {
+            hud_->toast(message);
+        }
         if (inspector_.take_focus()) {
             focus_selection();
         }

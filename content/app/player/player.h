@@ -91,6 +91,7 @@ class Player {
     /// Steps down the ladder of surface detail, or up.
     void change_detail(int steps);
     void toggle_paths();
+    void run_on_selected(Inspector::TreeCommand command);
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
     /// Drag and wheel of an orbiting camera, or of a model's initial camera, which then becomes

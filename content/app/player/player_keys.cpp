@@ -36,6 +36,9 @@ bool shows_relief(const HelpState& state) {
 bool has_markers(const HelpState& state) {
     return state.markers;
 }
+bool is_selected(const HelpState& state) {
+    return state.selected;
+}
 bool has_edits(const HelpState& state) {
     return state.edited;
 }
@@ -57,8 +60,7 @@ std::span<const PlayerKey> Player::keys() {
         {"Camera", "C", "next camera: those of the level, fly, orbit", GLFW_KEY_C, 0,
          [](Player& p) { p.cycle_camera(); }},
         {"Camera", "F", "orbit the selection", GLFW_KEY_F, 0,
-         [](Player& p) { p.focus_selection(); },
-         [](const HelpState& state) { return state.selected; }},
+         [](Player& p) { p.focus_selection(); }, is_selected},
 
         {"Time and levels", "Space", "pause, resume", GLFW_KEY_SPACE, 0,
          [](Player& p) { p.set_paused(!p.paused_); }},
@@ -151,6 +153,19 @@ std::span<const PlayerKey> Player::keys() {
          .label = "Click",
          .text = "markers: the place of the selected one on the face",
          .shown = [](const HelpState& state) { return state.places; }},
+        {"Edit", "Ctrl X", "cut, copy, paste the selected entity with its children", GLFW_KEY_X,
+         kControl, [](Player& p) { p.run_on_selected(Inspector::TreeCommand::Cut); }, is_selected},
+        {"Edit", "Ctrl C", "cut, copy, paste the selected entity with its children", GLFW_KEY_C,
+         kControl, [](Player& p) { p.run_on_selected(Inspector::TreeCommand::Copy); }, is_selected},
+        {"Edit", "Ctrl V", "cut, copy, paste the selected entity with its children", GLFW_KEY_V,
+         kControl, [](Player& p) { p.run_on_selected(Inspector::TreeCommand::Paste); },
+         is_selected},
+        {"Edit", "", "paste what was cut, keep its transform", GLFW_KEY_V, kControl | kShift,
+         [](Player& p) { p.run_on_selected(Inspector::TreeCommand::PasteLocal); }},
+        {"Edit", "Ctrl D", "duplicate, delete it", GLFW_KEY_D, kControl,
+         [](Player& p) { p.run_on_selected(Inspector::TreeCommand::Duplicate); }, is_selected},
+        {"Edit", "Ctrl Del", "duplicate, delete it", GLFW_KEY_DELETE, kControl,
+         [](Player& p) { p.run_on_selected(Inspector::TreeCommand::Delete); }, is_selected},
         {"Edit", "Ctrl Z", "undo", GLFW_KEY_Z, kControl, [](Player& p) { p.undo_or_redo(true); },
          has_edits},
         {"Edit", "Ctrl Y", "redo", GLFW_KEY_Y, kControl, [](Player& p) { p.undo_or_redo(false); },
@@ -251,6 +266,10 @@ void Player::toggle_paths() {
     } else {
         hud_->toast("this level has no paths");
     }
+}
+
+void Player::run_on_selected(Inspector::TreeCommand command) {
+    hud_->toast(inspector_.run(stage_->world, command));
 }
 
 void Player::undo_or_redo(bool undo) {

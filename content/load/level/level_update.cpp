@@ -5,6 +5,7 @@
 #include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
 #include "ecs/field_access.h"
+#include "ecs/field_watch.h"
 #include "ecs/world.h"
 
 #include <algorithm>
@@ -15,26 +16,6 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kMaxFollowed = 20000;
-
-bool same_field(const FieldInfo& field, const void* a, const void* b) {
-    const std::size_t count = element_count(field, a);
-    bool same = count == element_count(field, b);
-    for (std::size_t i = 0; same && i < count; ++i) {
-        same = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
-    }
-    return same;
-}
-
-/// The fields of `a` that differ in `b`.
-std::vector<const FieldInfo*> changed_fields(const AnyComponent& a, const AnyComponent& b) {
-    std::vector<const FieldInfo*> changed;
-    for (const FieldInfo& field : a.info().fields) {
-        if (!same_field(field, field_ptr(a.data(), field), field_ptr(b.data(), field))) {
-            changed.push_back(&field);
-        }
-    }
-    return changed;
-}
 
 void add_change(std::vector<LevelChange>& changes, const AnyComponent& before, LevelChange change) {
     change.fields = changed_fields(before, change.now);
@@ -97,7 +78,7 @@ void apply_change(World& world, const LevelChange& change) {
     case LevelPart::Component: {
         AnyComponent value = AnyComponent::read(world, change.entity, info);
         adopt_change(change, value);
-        world.write(change.entity, info.id, value.data());
+        write_fields(world, change.entity, std::move(value));
         break;
     }
     case LevelPart::Resource: {

@@ -6,6 +6,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"
+#include "ecs/field_watch.h"
 #include "ecs/world.h"
 
 #include <algorithm>
@@ -95,7 +96,7 @@ Status set_in_entities(
         }
         LIMN_TRY(set_field(
             info, component.data(), field_path, value, location, make_name_resolver(world)));
-        world.write(entity, info.id, component.data());
+        write_fields(world, entity, std::move(component));
         is_set = true;
     }
     return is_set ? Status(Done{})
