@@ -421,6 +421,7 @@ void InstanceCollector::add_command(
     }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;
+    run.wide = state.wide;
     run.first_command = static_cast<std::uint32_t>(commands_.size());
     run.command_count = 1;
     DrawCommand command = {mesh.index_count, count, mesh.first_index, base_vertex, first};
@@ -435,7 +436,8 @@ void InstanceCollector::add_command(
     }
     commands_.push_back(command);
     if (!runs.empty() && runs.back().features == run.features
-        && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored) {
+        && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored
+        && runs.back().wide == run.wide) {
         ++runs.back().command_count;
     } else {
         runs.push_back(run);

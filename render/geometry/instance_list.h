@@ -33,6 +33,7 @@ struct DrawRun {
     SurfaceFeatures features = {};  ///< without kVelocity
     std::uint32_t textures = 0;     ///< index for MaterialPool::bind_textures
     bool mirrored = false;          ///< front faces are clockwise
+    bool wide = false;              ///< 32-bit indices (mesh_pool.h)
     std::uint32_t first_command = 0;
     std::uint32_t command_count = 0;
 };

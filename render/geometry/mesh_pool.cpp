@@ -2,12 +2,14 @@
 
 #include "ecs/base/log.h"
 #include "render/geometry/mesh_curvature.h"
+#include "render/geometry/triangle_order.h"
 #include "render/gpu/grown_buffer.h"
 
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace limn {
@@ -93,7 +95,19 @@ float mean_edge(const MeshData& mesh, std::uint32_t count) {
     return static_cast<float>(sum / std::max(count, 1u));
 }
 
+/// Two 16-bit indices in each word, the first in its low bytes: this machine's order.
+std::vector<std::uint32_t> in_pairs(std::span<const std::uint32_t> indices) {
+    static_assert(std::endian::native == std::endian::little);
+    std::vector<std::uint32_t> words((indices.size() + 1) / 2);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        words[i / 2] |= indices[i] << (16 * (i % 2));
+    }
+    return words;
+}
+
 }  // namespace
+
+// Techniques: engine.compact-data
 
 MeshPool::MeshPool() : streams_("meshes") {
     vertex_slots_.grow(kInitialVertices);
@@ -122,7 +136,7 @@ void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
             meshes_[i].version = meshes[i].version;
             meshes_[i].bounds = meshes[i].bounds;
             if (drawable[i] != 0) {
-                upload(meshes[i], coarse[i], meshes_[i]);
+                upload(meshes[i], coarse[i], i >= known, meshes_[i]);
             }
             ++revision_;
         }
@@ -138,7 +152,7 @@ void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
 }
 
 void MeshPool::upload(
-    const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range) {
+    const MeshData& mesh, std::span<const CoarseTriangles> coarse, bool fresh, MeshRange& range) {
     if (is_empty(range.bounds)) {
         for (const Vec3& p : mesh.positions) {
             grow(range.bounds, p);
@@ -153,16 +167,21 @@ void MeshPool::upload(
     range.base_vertex = static_cast<std::int32_t>(first);
     streams_.reserve(vertex_slots_.capacity());
     const std::size_t old_indices = index_slots_.capacity();
-    std::vector<std::uint32_t> indices(
-        mesh.indices.begin(), mesh.indices.begin() + range.index_count);
+    const auto triangles = std::span(mesh.indices).first(range.index_count);
+    std::vector<std::uint32_t> indices =
+        fresh ? order_for_cache(triangles, mesh.positions.size())
+              : std::vector<std::uint32_t>(triangles.begin(), triangles.end());
     for (const CoarseTriangles& level : coarse) {
         range.coarse.push_back(
             {static_cast<std::uint32_t>(indices.size()),
              static_cast<std::uint32_t>(level.indices.size()), level.error});
         indices.insert(indices.end(), level.indices.begin(), level.indices.end());
     }
-    range.first_index =
-        index_slots_.allocate_or_grow(static_cast<std::uint32_t>(indices.size()), kInitialIndices);
+    range.wide = mesh.positions.size() > kMaxShortVertices;
+    const std::vector<std::uint32_t> words = range.wide ? indices : in_pairs(indices);
+    const std::uint32_t first_word =
+        index_slots_.allocate_or_grow(static_cast<std::uint32_t>(words.size()), kInitialIndices);
+    range.first_index = range.wide ? first_word : 2 * first_word;
     for (CoarseRange& level : range.coarse) {
         level.first_index += range.first_index;
     }
@@ -189,7 +208,7 @@ void MeshPool::upload(
     if (streams_.has(VertexStream::Curvature)) {
         write_curvatures(streams_, mesh, range);
     }
-    indices_.write(std::size_t{4} * range.first_index, std::span<const std::uint32_t>(indices));
+    indices_.write(std::size_t{4} * first_word, std::span<const std::uint32_t>(words));
 }
 
 void MeshPool::release(const MeshRange& range) {
@@ -199,7 +218,11 @@ void MeshPool::release(const MeshRange& range) {
         for (const CoarseRange& level : range.coarse) {
             count += level.index_count;
         }
-        index_slots_.release(range.first_index, count);
+        if (range.wide) {
+            index_slots_.release(range.first_index, count);
+        } else {
+            index_slots_.release(range.first_index / 2, (count + 1) / 2);
+        }
     }
 }
 

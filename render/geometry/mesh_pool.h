@@ -12,21 +12,25 @@
 namespace limn {
 
 // All meshes in one set of vertex streams and one index buffer, so that a multi-draw covers any of
-// them without a state change. Full buffers are replaced by ones twice as large, copied on the GPU.
-// A mesh that was edited or freed (MeshData::version) is uploaded anew; its old range is reused.
-// Only new meshes get coarser triangles: a mesh that is edited once may be edited every frame.
+// them with indices of the same size. Indices take 16 bits up to 65,535 vertices, 32 beyond
+// (engine.compact-data), in one buffer: offsets count indices of the mesh's own size. Full buffers
+// are replaced by ones twice as large, copied on the GPU. A mesh that was edited or freed
+// (MeshData::version) is uploaded anew; its old range is reused. Only new meshes get coarser
+// triangles, and an order of triangles for the cache of vertices (triangle_order.h): a mesh that is
+// edited once may be edited every frame.
 
 /// Coarser triangles of a mesh, for its shadows.
 struct CoarseRange {
-    std::uint32_t first_index = 0;
+    std::uint32_t first_index = 0;  ///< of the mesh's size
     std::uint32_t index_count = 0;
     float error = 0;  ///< CoarseTriangles::error [m]
 };
 
 /// The range of a mesh in the buffers.
 struct MeshRange {
-    std::uint32_t first_index = 0;
+    std::uint32_t first_index = 0;  ///< in indices of its size from the buffer's begin
     std::uint32_t index_count = 0;  ///< 0: nothing to draw
+    bool wide = false;              ///< indices of 32 bits; otherwise of 16
     std::int32_t base_vertex = 0;
     std::uint32_t vertex_count = 0;
     std::uint32_t version = 0;        ///< of the MeshData
@@ -36,6 +40,17 @@ struct MeshRange {
     bool colored = false;   ///< has vertex colors
     bool tangents = false;  ///< has vertex tangents, as normal maps need
 };
+
+/// Meshes of up to so many vertices have 16-bit indices: 0xffff, a restart elsewhere, is none.
+inline constexpr std::size_t kMaxShortVertices = 65535;
+
+/// GL_UNSIGNED_INT or GL_UNSIGNED_SHORT, and bytes of an index.
+[[nodiscard]] constexpr GLenum index_type(bool wide) {
+    return wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT;
+}
+[[nodiscard]] constexpr std::size_t index_size(bool wide) {
+    return wide ? 4 : 2;
+}
 
 class MeshPool {
   public:
@@ -55,11 +70,14 @@ class MeshPool {
     [[nodiscard]] const VertexStreams& streams() const { return streams_; }
     [[nodiscard]] const gpu::Buffer& indices() const { return indices_; }
     [[nodiscard]] std::uint32_t used_vertices() const { return vertex_slots_.used(); }
-    [[nodiscard]] std::uint32_t used_indices() const { return index_slots_.used(); }
+    /// Bytes of all indices.
+    [[nodiscard]] std::size_t index_bytes() const { return std::size_t{4} * index_slots_.used(); }
 
   private:
     void release(const MeshRange& range);
-    void upload(const MeshData& mesh, std::span<const CoarseTriangles> coarse, MeshRange& range);
+    void upload(
+        const MeshData& mesh, std::span<const CoarseTriangles> coarse, bool fresh,
+        MeshRange& range);
 
     std::vector<MeshRange> meshes_;
     CoarseMemory coarse_memory_;
@@ -67,7 +85,7 @@ class MeshPool {
     VertexStreams streams_;
     gpu::Buffer indices_;
     SlotAllocator vertex_slots_;
-    SlotAllocator index_slots_;
+    SlotAllocator index_slots_;  ///< in words of 32 bits
 };
 
 }  // namespace limn

@@ -358,6 +358,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
              .shell = !block.shells.empty() && block.shells[i].index > 0,
              .fin = !block.shells.empty() && block.shells[i].index == 0,
              .mirrored = (det < 0) != block.inside_out_,
+             .wide = mesh < meshes.size() && meshes[mesh].wide,
              .batch = batch,
              .index = deformed ? shape : mesh});
     }

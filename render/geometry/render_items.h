@@ -33,8 +33,8 @@ class World;
 // their far sides are drawn; and the shells of fur (Fur): the same meshes, inflated.
 
 /// Draw state of an item as a number, by which items are sorted and counted. From high bits to low:
-/// blended, inflated, deformed, shell, fin, batch (26 bits), mirrored, level of coarse triangles (3
-/// bits), index of the mesh or, if deformed, of the deformed instance (29 bits).
+/// blended, inflated, deformed, shell, fin, wide, batch (25 bits), mirrored, level of coarse
+/// triangles (3 bits), index of the mesh or, if deformed, of the deformed instance (29 bits).
 using DrawKey = std::uint64_t;
 
 struct DrawState {
@@ -44,6 +44,7 @@ struct DrawState {
     bool shell = false;  ///< of fur
     bool fin = false;    ///< of fur, instead
     bool mirrored = false;
+    bool wide = false;        ///< 32-bit indices
     std::uint32_t batch = 0;  ///< of MaterialPool
     std::uint32_t level = 0;  ///< 0: the mesh; n: MeshRange::coarse[n - 1], of shadow casters
     std::uint32_t index = 0;  ///< of the mesh or, if deformed, of the deformed instance
@@ -52,9 +53,9 @@ inline constexpr int kLevelBit = 29;
 [[nodiscard]] constexpr DrawKey make_draw_key(const DrawState& s) {
     return static_cast<DrawKey>(s.blended) << 63 | static_cast<DrawKey>(s.inflated) << 62
            | static_cast<DrawKey>(s.deformed) << 61 | static_cast<DrawKey>(s.shell) << 60
-           | static_cast<DrawKey>(s.fin) << 59 | static_cast<DrawKey>(s.batch) << 33
-           | static_cast<DrawKey>(s.mirrored) << 32 | static_cast<DrawKey>(s.level) << kLevelBit
-           | s.index;
+           | static_cast<DrawKey>(s.fin) << 59 | static_cast<DrawKey>(s.wide) << 58
+           | static_cast<DrawKey>(s.batch) << 33 | static_cast<DrawKey>(s.mirrored) << 32
+           | static_cast<DrawKey>(s.level) << kLevelBit | s.index;
 }
 [[nodiscard]] constexpr bool is_blended(DrawKey key) {
     return key >> 63 != 0;
@@ -67,7 +68,8 @@ inline constexpr int kLevelBit = 29;
         .shell = (key >> 60 & 1) != 0,
         .fin = (key >> 59 & 1) != 0,
         .mirrored = (key >> 32 & 1) != 0,
-        .batch = static_cast<std::uint32_t>(key >> 33) & 0x03ffffffu,
+        .wide = (key >> 58 & 1) != 0,
+        .batch = static_cast<std::uint32_t>(key >> 33) & 0x01ffffffu,
         .level = static_cast<std::uint32_t>(key >> kLevelBit) & 7u,
         .index = static_cast<std::uint32_t>(key) & ((1u << kLevelBit) - 1)};
 }

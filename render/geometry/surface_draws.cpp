@@ -43,7 +43,7 @@ void draw_commands(
         streams.curvatures().bind(device, layout::kCurvaturesUnit);
     }
     device.draw_indexed_indirect(
-        GL_TRIANGLES, GL_UNSIGNED_INT, commands.offset + first * sizeof(DrawCommand),
+        GL_TRIANGLES, index_type(run.wide), commands.offset + first * sizeof(DrawCommand),
         static_cast<int>(count));
 }
 

@@ -44,7 +44,7 @@ BumpStrategy strategy_of(
 void append_command(std::vector<DrawRun>& runs, const DrawRun& run, std::uint32_t command) {
     const bool follows = !runs.empty() && runs.back().features == run.features
                          && runs.back().textures == run.textures
-                         && runs.back().mirrored == run.mirrored
+                         && runs.back().mirrored == run.mirrored && runs.back().wide == run.wide
                          && runs.back().first_command + runs.back().command_count == command;
     if (!follows) {
         runs.push_back(run);

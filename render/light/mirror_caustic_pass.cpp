@@ -45,8 +45,8 @@ void draw_mirror(
     program.set("color", wires ? Vec3(m.wires) : m.strength * m.color * Vec3(light.color));
     program.set("even", wires ? 1.0f : 0.0f);
     device.draw_indexed(
-        GL_TRIANGLES, static_cast<int>(mesh.index_count), GL_UNSIGNED_INT,
-        mesh.first_index * sizeof(std::uint32_t), mesh.base_vertex);
+        GL_TRIANGLES, static_cast<int>(mesh.index_count), index_type(mesh.wide),
+        mesh.first_index * index_size(mesh.wide), mesh.base_vertex);
 }
 
 }  // namespace

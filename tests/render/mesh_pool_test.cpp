@@ -1,5 +1,9 @@
 #include "render/geometry/mesh_pool.h"
+#include "render/geometry/triangle_order.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/technique.h"
+
+#include <cstring>
 
 namespace limn::test::mesh_pool_test {
 namespace {
@@ -55,7 +59,7 @@ TEST_CASE_FIXTURE(RenderTest, "mesh pool: an edited mesh is uploaded again, othe
     meshes[0].version = 1;
     pool.update(meshes);
     CHECK(pool.used_vertices() == 4 * (5 + 3 + 4));
-    CHECK(pool.used_indices() == 6 * (5 + 3 + 4));
+    CHECK(pool.index_bytes() == 2 * 6 * (5 + 3 + 4));
     CHECK(read_stream<Vec3>(pool, VertexStream::Position, 0) == meshes[0].positions);
     CHECK(read_stream<Vec3>(pool, VertexStream::Position, 2) == meshes[2].positions);
 }
@@ -97,6 +101,76 @@ TEST_CASE_FIXTURE(RenderTest, "mesh pool: growing keeps every stream") {
     CHECK(
         read_stream<Color>(pool, VertexStream::Color, 1)
         == std::vector<Color>(80000, Color{0x3c00, 0x3c00, 0x3c00, 0x3c00}));
+}
+
+TEST_CASE_FIXTURE(
+    RenderTest, "mesh pool: up to 65,535 vertices an index takes 2 bytes, beyond 4"
+                    * technique("engine.compact-data")) {
+    const auto with_vertices = [](std::size_t count) {
+        MeshData mesh = make_quads(16384);
+        mesh.positions.resize(count, {7, 7, 7});
+        const auto last = static_cast<std::uint32_t>(count - 1);
+        std::erase_if(mesh.indices, [&](std::uint32_t index) { return index >= last; });
+        mesh.indices.resize(mesh.indices.size() / 3 * 3 - 3);  // an odd number
+        mesh.indices.insert(mesh.indices.end(), {last, 0, 1});
+        return mesh;
+    };
+    const std::vector<MeshData> meshes = {
+        make_quads(3), with_vertices(65535), make_quads(2), with_vertices(65536)};
+    MeshPool pool;
+    pool.update(meshes);
+    CHECK_FALSE(pool.meshes()[0].wide);
+    CHECK_FALSE(pool.meshes()[1].wide);
+    CHECK(pool.meshes()[3].wide);
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        CAPTURE(i);
+        const MeshRange& range = pool.meshes()[i];
+        const std::size_t size = index_size(range.wide);
+        std::vector<std::byte> raw(size * range.index_count);
+        pool.indices().read(size * range.first_index, std::span(raw));
+        std::vector<std::uint32_t> back(range.index_count);
+        for (std::size_t k = 0; k < back.size(); ++k) {
+            std::memcpy(&back[k], raw.data() + size * k, size);  // little-endian
+        }
+        CHECK(back == order_for_cache(meshes[i].indices, meshes[i].positions.size()));
+        std::size_t count = range.index_count;
+        for (const CoarseRange& level : range.coarse) {
+            count += level.index_count;
+        }
+        bytes += (size * count + 3) / 4 * 4;
+    }
+    CHECK(pool.index_bytes() == bytes);
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "mesh pool: meshes with indices of both sizes are drawn, and cast shadows, alike"
+               * technique("engine.compact-data")) {
+    const MeshData ball = make_ball(32);
+    MeshData many = ball;  // the same triangles, and vertices that nothing uses
+    many.positions.resize(kMaxShortVertices + 1);
+    many.normals.resize(many.positions.size(), Vec3(0, 0, 1));
+    many.uvs.resize(ball.uvs.empty() ? 0 : many.positions.size());
+    many.tangents.resize(ball.tangents.empty() ? 0 : many.positions.size());
+    shine(DirectionalLight{}, at({1, 3, 2}));
+    const MeshId narrow = add(ball);
+    const MeshId wide = add(many);
+    place(add(make_square()), add(Material{}), at({0, 0, -1}));
+    const MaterialId clay = add(Material{.base_color = {0.8f, 0.4f, 0.2f, 1}});
+    std::vector<Entity> balls;
+    for (int i = 0; i < 9; ++i) {
+        const Vec3 position = {
+            0.5f * static_cast<float>(i % 3) - 0.5f, 0.5f * static_cast<float>(i / 3) - 0.5f, 0};
+        balls.push_back(place(narrow, clay, affine_from(position, {1, 0, 0, 0}, Vec3(0.2f))));
+    }
+    const RenderView view = look({0, 0, 2}, {0, 0, 0}, 96, 96);
+    const gpu::FloatImage expected = radiance(view);
+    CHECK(draw(view).statistics.draws == 1);
+    for (std::size_t i = 0; i < balls.size(); i += 2) {
+        world.get<MeshInstance>(balls[i]).mesh = wide;
+    }
+    CHECK(draw(view).statistics.draws == 2);  // one for each size of indices
+    CHECK(radiance(view).pixels == expected.pixels);
 }
 
 TEST_CASE_FIXTURE(

@@ -112,7 +112,7 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: every mesh instance once, with its b
 }
 
 TEST_CASE_FIXTURE(ItemsTest, "render items: a draw key preserves the draw state") {
-    for (int bits = 0; bits < 64; ++bits) {
+    for (int bits = 0; bits < 128; ++bits) {
         const DrawState state = {
             .blended = (bits & 1) != 0,
             .inflated = (bits & 2) != 0,
@@ -120,7 +120,8 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: a draw key preserves the draw state"
             .shell = (bits & 8) != 0,
             .fin = (bits & 16) != 0,
             .mirrored = (bits & 32) != 0,
-            .batch = 0x02bcdef1,
+            .wide = (bits & 64) != 0,
+            .batch = 0x01bcdef1,
             .level = 5,
             .index = 0x1edcba98};
         const DrawState back = draw_state(make_draw_key(state));
@@ -130,6 +131,7 @@ TEST_CASE_FIXTURE(ItemsTest, "render items: a draw key preserves the draw state"
         CHECK(back.shell == state.shell);
         CHECK(back.fin == state.fin);
         CHECK(back.mirrored == state.mirrored);
+        CHECK(back.wide == state.wide);
         CHECK(back.batch == state.batch);
         CHECK(back.level == state.level);
         CHECK(back.index == state.index);

@@ -5,6 +5,7 @@
 #include "content/app/bench/bench_lights.h"
 #include "content/app/bench/bench_report.h"
 #include "content/app/bench/bench_surfaces.h"
+#include "content/app/bench/bench_tables.h"
 #include "content/app/commands/headless.h"
 #include "content/app/commands/progress.h"
 #include "content/app/commands/sibling_program.h"
@@ -39,6 +40,7 @@ constexpr const char* kParticlesName = "particles";  ///< likewise: particle poo
 constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
 constexpr const char* kCharactersName = "characters";  ///< likewise: poses of crowds
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
+constexpr const char* kTablesName = "tables";        ///< not a scene: hash tables
 constexpr const char* kSurfacesName = "surfaces";    ///< not a scene: kinds of surface detail
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
 
@@ -110,6 +112,12 @@ Status run_surfaces_bench(const BenchOptions& options) {
     const SurfaceBench bench = LIMN_TRY(measure_surfaces(options, headless));
     return write_results(
         options, surface_bench_table(bench), surface_bench_json(bench), surface_bench_csv(bench));
+}
+
+Status run_tables_bench(const BenchOptions& options) {
+    const TableBench bench = measure_tables(options.frames);
+    return write_results(
+        options, table_bench_text(bench), table_bench_json(bench), table_bench_csv(bench));
 }
 
 Status run_fakephong_bench(const BenchOptions& options) {
@@ -242,6 +250,9 @@ Status run_bench(const BenchOptions& options) {
     }
     if (options.scene == kSurfacesName) {
         return run_surfaces_bench(options);
+    }
+    if (options.scene == kTablesName) {
+        return run_tables_bench(options);
     }
     if (options.scene == kFakePhongName) {
         return run_fakephong_bench(options);

@@ -164,6 +164,13 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"detail
 "gbuffer_ms", "ratio"}]}
 CSV: detail,frames,median_ms,gbuffer_ms,ratio
 
+`limn bench tables` looks up names in the hash tables of the book's chapter 11 and in
+std::unordered_map, --frames times each; the best counts. "compared" is keys per lookup, "time" a
+ratio to std::unordered_map.
+JSON: {"zoo": [{"step", "longest", "total", "slots"}], "points": [{"table", "names", "longest",
+"compared", "ratio"}]}
+CSV: table,names,longest,compared,ratio
+
 `limn bench fakephong` draws each model of the level `phonglab` under 1, 4 and 16 lights by every
 method of rendering.shading, alternating, --frames times each; the best counts. Beside these times
 are the operations that the methods take on a CPU: lighting evaluations per facet, the rest per pixel,

@@ -22,6 +22,8 @@
 #include "ecs/hierarchy.h"
 #include "ecs/reflect.h"
 #include "ecs/world.h"
+#include "render/geometry/mesh_pool.h"
+#include "render/geometry/triangle_order.h"
 
 #include <fmt/format.h>
 
@@ -245,19 +247,33 @@ void print_assets(
     const Assets& assets, std::span<const MeshData> meshes, std::span<const Material> materials) {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
+    std::size_t index_bytes = 0;
+    const auto transformed = [](const MeshData& mesh) {
+        const std::size_t count = mesh.positions.size();
+        const bool valid = mesh.indices.size() % 3 == 0
+                           && std::ranges::all_of(mesh.indices, [&](auto i) { return i < count; });
+        return valid ? transformed_per_triangle(order_for_cache(mesh.indices, count), count) : 0;
+    };
+    const auto bytes_of_index = [](const MeshData& mesh) {
+        return index_size(mesh.positions.size() > kMaxShortVertices);
+    };
     for (const MeshData& mesh : meshes) {
         triangles += mesh.indices.size() / 3;
         vertices += mesh.positions.size();
+        index_bytes += bytes_of_index(mesh) * mesh.indices.size();
     }
     fmt::print(
-        "{}, {}, {} vertices\n", counted(meshes.size(), "mesh"), counted(triangles, "triangle"),
-        vertices);
+        "{}, {}, {} vertices, {:.0f} KiB of indices\n", counted(meshes.size(), "mesh"),
+        counted(triangles, "triangle"), vertices, static_cast<double>(index_bytes) / 1024);
     for (std::size_t i = 0; i < std::min(meshes.size(), kMaxLines); ++i) {
         const MeshData& mesh = meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
         fmt::print(
-            "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n", mesh.indices.size() / 3,
-            size.x, size.y, size.z, mesh.name);
+            "    {:>8} triangles  {}-bit indices  {:.2f} transformed each  {:.3g} x {:.3g} x "
+            "{:.3g} "
+            "m  {}\n",
+            mesh.indices.size() / 3, 8 * bytes_of_index(mesh), transformed(mesh), size.x, size.y,
+            size.z, mesh.name);
     }
     print_rest(meshes.size());
 
