@@ -295,6 +295,15 @@ case_film() {
     rm turn.mp4
     expect 0 "$limn" farm resume turn.mp4.farm
     [ "$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height,color_space -of csv=p=0 turn.mp4)" = 64,36,bt709,12 ] || fail "the film is another"
+    # Frames that are added later have the scene's sound, too.
+    ffmpeg -v error -f lavfi -i sine=frequency=440:duration=3 scene/tone.wav
+    sed 's|"entities": *\[|&{"name": "tone", "sound_player": {"file": "tone.wav"}}, |' scene/turn.level.json >scene/heard.level.json
+    expect 0 "$limn" farm local scene/heard.level.json --size 64x36 --fps 10 --frames 0:5 -o heard.mp4
+    rm heard.mp4
+    expect 0 "$limn" farm resume heard.mp4.farm --frames 6:17
+    local loudest
+    loudest=$(ffmpeg -nostdin -ss 1.2 -i heard.mp4 -af volumedetect -vn -f null - 2>&1 | sed -n 's/.*max_volume: \(.*\) dB/\1/p')
+    awk -v db="${loudest:--99}" 'BEGIN {exit !(db > -30)}' || fail "the end of the film has ${loudest:-no} dB"
 }
 
 case_tasks() {

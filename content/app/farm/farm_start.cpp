@@ -12,6 +12,7 @@
 #include "content/load/level/level_show.h"
 #include "content/sound/scene_sound.h"
 #include "ecs/base/hash.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -77,7 +78,18 @@ int choose_chunk(const FarmOptions& options, std::size_t frames) {
         std::clamp<std::size_t>(frames / (processes * kChunksPerProcess), 1, kMaxAutoChunk));
 }
 
-/// Keeps what is heard of the scene until the last frame, or its own end, for the film.
+constexpr double kRepeatedSound = 120;  ///< [s] kept of sounds that repeat
+
+/// Until all sounds have been heard.
+double end_of_sounds(const std::vector<SceneSound>& sounds) {
+    double end = 0;
+    for (const SceneSound& sound : sounds) {
+        end = std::max(end, sound.every > 0 ? kRepeatedSound : sound.start + sound.data.duration());
+    }
+    return end;
+}
+
+/// Keeps what is heard of the scene for the film, also of frames that `resume` may add.
 Status freeze_sound(const Stage& stage, FarmJob& job) {
     const std::vector<SceneSound> sounds = stage_sounds(stage);
     const bool is_silent =
@@ -85,11 +97,8 @@ Status freeze_sound(const Stage& stage, FarmJob& job) {
     if (is_silent || !job.film_settings.sound.empty()) {
         return Done{};
     }
-    const auto span = static_cast<std::size_t>(job.frames.back() - job.frames.front() + 1);
-    if (span != job.frames.size()) {
-        return Done{};  // a film with gaps has no sound
-    }
-    const double end = std::max((job.frames.back() + 1) / job.fps, stage.scene.duration);
+    const double end =
+        std::max({(job.frames.back() + 1) / job.fps, stage.scene.duration, end_of_sounds(sounds)});
     const std::string file = job.folder + "/scene.wav";
     LIMN_TRY(save_wave(mix_sounds(sounds, 0, end), file));
     job.film_settings.sound = LIMN_TRY(freeze_other_file(job, "sound", file));
@@ -379,6 +388,20 @@ Status run_farm_status(const FarmJobOptions& options) {
     return Done{};
 }
 
+/// The end of the film may be beyond that of the kept sound.
+Status warn_of_silence(const FarmJob& job) {
+    if (job.scene_sound) {
+        const std::string file = job.folder + "/inputs/" + job.film_settings.sound;
+        const double end = LIMN_TRY(load_sound(file)).duration();
+        if ((job.frames.back() + 1) / job.fps > end) {
+            log_warn(
+                "{}: the kept sound ends at {} s; a new job has what repeats after that", file,
+                fmt::format("{:.1f}", end));
+        }
+    }
+    return Done{};
+}
+
 Status run_farm_resume(const FarmJobOptions& options) {
     FarmJob job = LIMN_TRY(load_farm_job(absolute(options.folder)));
     LIMN_TRY(check_scheduler(job));
@@ -396,6 +419,7 @@ Status run_farm_resume(const FarmJobOptions& options) {
         std::ranges::set_union(job.frames, options.frames, std::back_inserter(all));
         job.frames = std::move(all);
         LIMN_TRY(save_farm_job(job));
+        LIMN_TRY(warn_of_silence(job));
     }
     std::error_code ignored;
     std::filesystem::remove(job.folder + "/cancel", ignored);
