@@ -148,7 +148,8 @@ void touch_samples(BenchReport& report) {
 }  // namespace
 
 void run_bench_frame(
-    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report,
+    bool few_triangles) {
     FrameGraph& graph = frame_graph(*headless.renderer);
     const double begin_threads = all_threads_ms();
     const SteadyClock::time_point begin = SteadyClock::now();
@@ -156,7 +157,8 @@ void run_bench_frame(
     const SteadyClock::time_point simulated = SteadyClock::now();
     const RenderView view =
         make_render_view(stage.world, stage.scene.camera, {.width = size.x, .height = size.y});
-    const FrameOutput frame = render_frame(*headless.renderer, stage.world, view);
+    const FrameOutput frame = render_frame(
+        *headless.renderer, stage.world, view, {.aovs = {}, .few_triangles = few_triangles});
     const SteadyClock::time_point drawn = SteadyClock::now();
     graph.wait_for_timings();
     const SteadyClock::time_point end = SteadyClock::now();
@@ -229,6 +231,12 @@ Status check_bench_options(const BenchOptions& options) {
     }
     if (!options.svg.empty() && options.scene != kParticlesName && options.scene != kFacesName) {
         return fail("--svg is for `particles` and `faces`, found `{}`", options.scene);
+    }
+    const bool is_scene = !is_program(options.scene) && options.scene != kLensName
+                          && options.scene != kSurfacesName && options.scene != kTablesName
+                          && options.scene != kFakePhongName && options.scene != kLightsScene;
+    if (options.bottleneck && !is_scene) {
+        return fail("--bottleneck is for scenes, found `{}`", options.scene);
     }
     if (is_program(options.scene)) {
         return Done{};
@@ -314,6 +322,9 @@ Status run_bench(const BenchOptions& options) {
     report.resident_mib = resident_memory_mib();
     report.gpu_mib =
         static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
+    if (options.bottleneck) {
+        report.stages = measure_stages(stage, *headless, options.size, options.frames);
+    }
     return write_results(options, bench_table(report), bench_json(report), bench_csv(report));
 }
 

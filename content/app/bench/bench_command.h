@@ -27,10 +27,11 @@ struct BenchOptions {
     int warmup = 60;   ///< run before, not measured
     IVec2 size = {1280, 720};
     std::vector<Assignment> assignments;  ///< --set
-    std::string json;      ///< file, or "-" for stdout instead of the table; empty = none
-    std::string csv;       ///< the same
-    std::string svg;       ///< file, of `particles` and `faces`; empty = none
-    std::string only;      ///< one part of `particles`, `faces` or `characters`; empty = all
+    std::string json;         ///< file, or "-" for stdout instead of the table; empty = none
+    std::string csv;          ///< the same
+    std::string svg;          ///< file, of `particles` and `faces`; empty = none
+    std::string only;         ///< one part of `particles`, `faces` or `characters`; empty = all
+    bool bottleneck = false;  ///< also measure the stages of the pipeline (bottleneck.h)
     std::size_t most = 0;  ///< particles at the last point of the curves; 0 = the program's default
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device
     std::string renderer;                 ///< of render_profiles(); empty = the best
@@ -46,7 +47,8 @@ struct BenchOptions {
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
 /// next frame. Adds the times to `report` unless it is null.
 void run_bench_frame(
-    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report);
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report,
+    bool few_triangles = false);
 
 /// Scene, size and machine.
 [[nodiscard]] BenchReport

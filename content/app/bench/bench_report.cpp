@@ -97,7 +97,7 @@ std::string bench_table(const BenchReport& report) {
                 kShownMs);
         }
     }
-    return text;
+    return report.stages ? text + bottleneck_text(*report.stages) : text;
 }
 
 std::string bench_json(const BenchReport& report) {
@@ -123,6 +123,12 @@ std::string bench_json(const BenchReport& report) {
           {"programs", report.programs},
           {"compiled", report.compiled}}},
         {"compile_ms", report.compile_ms}};
+    if (report.stages) {
+        json["stages"] = {
+            {"application_ms", report.stages->application},
+            {"geometry_ms", report.stages->geometry},
+            {"rasterization_ms", report.stages->rasterization}};
+    }
     for (const BenchKind kind : kReportKinds) {
         const char* key = kind == BenchKind::Frame    ? "frame"
                           : kind == BenchKind::System ? "systems"

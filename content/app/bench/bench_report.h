@@ -1,9 +1,11 @@
 #pragma once
 
+#include "content/app/bench/bottleneck.h"
 #include "content/app/bench/frame_statistics.h"
 #include "ecs/base/math.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +46,7 @@ struct BenchReport {
     int programs = 0;            ///< shader programs, after the last frame
     int compiled = 0;            ///< of them, in the measured frames
     double compile_ms = 0.0;     ///< before the first frame, for all programs that the level needs
+    std::optional<PipelineTimes> stages = {};  ///< with --bottleneck
     std::vector<BenchSeries> series = {};
 };
 

@@ -123,6 +123,9 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option(
            "--only", options.only, "`particles`, `faces`, `characters` only: measure one part")
         ->type_name("PART");
+    app->add_flag(
+        "--bottleneck", options.bottleneck,
+        "also measure what the frame waits for: application, geometry or rasterization");
     add_integer(
         *app, "--most",
         "`particles` only: how many at the last point of the curves; default: 10000000",
@@ -140,7 +143,8 @@ play` chooses them (`--set rendering.level_rows=1080`: as `limn render`). Times 
 
 JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer", "version"},
 "memory": {"resident_begin_mib", "resident_mib", "heap_begin_mib", "heap_mib", "gpu_mib"},
-"counts": {"entities", "boxes_tested", "instances", "draws", "triangles", "programs", "compiled"}, "compile_ms", and arrays
+"counts": {"entities", "boxes_tested", "instances", "draws", "triangles", "programs", "compiled"}, "compile_ms",
+with --bottleneck "stages": {"application_ms", "geometry_ms", "rasterization_ms"}, and arrays
 "frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"}}
 CSV: kind,name,clock,median_ms,p95_ms,max_ms
 
@@ -210,6 +214,7 @@ Examples:
   limn bench fakephong --size 640x360 --frames 9
   limn bench surfaces --size 640x360 --frames 40
   limn bench gallery --size 640x360 --set glow.strength=0.1
+  limn bench gallery --size 320x180 --frames 30 --bottleneck
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg
   limn bench particles --only growth --most 100000

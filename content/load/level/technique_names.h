@@ -122,6 +122,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.batching", "batching, instancing"},
     {"engine.billboard", "billboards"},
     {"engine.billboard-composite", "composite animated billboard"},
+    {"engine.bottleneck", "bottleneck analysis, CPU or GPU bound"},
     {"engine.camera-lag", "flexible camera, spring arm"},
     {"engine.camera-orbit", "third-person camera, orbit camera"},
     {"engine.compact-data", "16-bit indices, packed vertices"},
