@@ -51,7 +51,8 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
             static_cast<float>(request.width) / static_cast<float>(request.height));
     }
     camera_.previous = camera_.pose;
-    if (camera_.mode == CameraMode::Level && lens != nullptr) {
+    const bool placed = std::as_const(stage_->world).has<WorldTransform>(level_camera);
+    if (camera_.mode == CameraMode::Level && lens != nullptr && placed) {
         const RenderView view = make_render_view(stage_->world, level_camera, request);
         camera_.pose = view.world_from_camera;
         camera_.started = true;
