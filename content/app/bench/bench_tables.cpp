@@ -29,7 +29,7 @@ std::vector<std::string> level_names(std::size_t count) {
         names.push_back(fmt::format("{} {}", kWords[i % std::size(kWords)], i / 2));
     }
     std::ranges::sort(names);
-    names.erase(std::ranges::unique(names).begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
 
