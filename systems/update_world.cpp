@@ -170,8 +170,10 @@ void add_animation_systems(SystemList& systems) {
 void add_character_systems(SystemList& systems) {
     systems.add<add_motor_states>(Create, Both);
     systems.add<add_loose_states>(Create, Both);
+    systems.add<add_hero_states>(Create, Both);
     systems.add<update_heroes>(Move);
-    systems.add<update_motors>(Move);  // before poses, which put the feet where they are now
+    systems.add<update_motors>(Move);       // before poses, which put the feet where they are now
+    systems.add<return_lost_heroes>(Move);  // after motors, which find where it stands
     systems.add<update_loose_bodies>(Move);
 }
 

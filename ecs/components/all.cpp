@@ -170,6 +170,7 @@ void register_all_components() {
     register_component<Puppet>();
     register_component<PuppetState>();
     register_component<Hero>();
+    register_component<HeroState>();
     register_component<LooseBody>();
     register_component<LooseState>();
     register_component<CrowdAgent>();

@@ -4,6 +4,7 @@
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 
+#include <array>
 #include <cstdint>
 
 namespace limn {
@@ -103,6 +104,7 @@ struct Hero {
     float run = 4.2f;
     float reach = 1.1f;
     float throw_speed = 7.0f;
+    float lost = 2.0f;
     Entity camera{};
     Entity carried{};
 };
@@ -112,9 +114,35 @@ LIMN_FIELDS(Hero) {
     LIMN_FIELD(run, "speed of running", "m/s", 0, 100);
     LIMN_FIELD(reach, "distance at which it picks up a loose body", "m", 0, 100);
     LIMN_FIELD(throw_speed, "of what it throws", "m/s", 0, 100);
+    LIMN_FIELD(
+        lost, "time of a fall toward nothing, after which it is back where it stood; 0: never", "s",
+        0, 60);
     LIMN_FIELD(camera, "camera that its directions refer to, by name; none: the world");
     LIMN_FIELD(carried, "loose body that it carries");
 }
+
+/// State of a Hero.
+struct HeroState {
+    Vec3 aim = Vec3(0);
+    float aiming = 0.0f;
+    std::array<Vec3, 2> stood = {};
+    float since_stood = 0.0f;
+    std::uint32_t has_stood = 0;
+};
+
+LIMN_FIELDS(HeroState) {
+    LIMN_FIELD(aim, "direction in which it is about to throw; 0 0 0: none");
+    LIMN_FIELD(aiming, "time for which it has turned to throw", "s");
+    LIMN_FIELD(stood, "places where it stood on ground at rest, an earlier and a later one", "m");
+    LIMN_FIELD(since_stood, "time since the later of them", "s");
+    LIMN_FIELD(has_stood, "1: they are set", "", 0, 1);
+}
+
+/// Not copied with a prefab: an instance has no history.
+template <>
+struct ComponentTraits<HeroState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
 
 /// A ball or a crate, handled as a ball: falls, rolls on what is Walkable, is pushed by characters
 /// and carried and thrown by a Hero. Must not have a parent; its origin is its center.

@@ -12,7 +12,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace limn::hero_test {
 
@@ -33,6 +36,9 @@ struct HeroStage : MotorStage {
     }
     Entity add_ball(const Vec3& at, const LooseBody& body = {}) {
         return world.create(Transform{.position = at}, body);
+    }
+    [[nodiscard]] Vec3 ahead() {
+        return world.get<const Transform>(person).rotation * Vec3(0, 0, 1);
     }
     [[nodiscard]] Vec3 at(Entity entity) { return world.get<const Transform>(entity).position; }
 };
@@ -106,6 +112,73 @@ TEST_CASE("hero: picks up the nearest body ahead that is not too heavy, and thro
     stage.step(240);
     CHECK(stage.at(ball).z > 3);
     CHECK(double(stage.at(ball).y) == near(0.2).epsilon(1e-2));
+}
+
+TEST_CASE("hero: turns, and throws where the camera looks") {
+    HeroStage stage;
+    const auto look = [&](float pitch) {
+        return rotation_about({0, 1, 0}, kPi / 2) * rotation_about({1, 0, 0}, pitch);
+    };
+    const Entity camera =
+        stage.world.create(Transform{.position = {5, 2, 0}, .rotation = look(0)}, Camera{});
+    stage.world.get<Hero>(stage.person).camera = camera;
+    std::array<float, 2> rises = {};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Entity ball = stage.add_ball(stage.feet() + stage.ahead() * 0.8f + Vec3(0, 0.2f, 0));
+        stage.world.get<Transform>(camera).rotation = look(i == 0 ? -0.2f : 0.3f);
+        stage.step();
+        stage.press("hero_carry");
+        stage.step(60);
+        REQUIRE(stage.world.get<const Hero>(stage.person).carried == ball);
+        const float off = std::acos(std::clamp(-stage.ahead().x, -1.0f, 1.0f));
+        set_action(stage.world.resource<Input>(), "hero_carry");
+        int steps = 0;
+        for (; steps < 90 && !stage.world.get<const Hero>(stage.person).carried.is_null();
+             ++steps) {
+            stage.step();
+        }
+        set_action(stage.world.resource<Input>(), "hero_carry", 0);
+        const Vec3 speed = stage.world.get<const LooseState>(ball).velocity;
+        CHECK(double(glm::length(speed)) == near(7).epsilon(0.05));
+        CHECK(speed.x < 0);  // the camera looks along -x
+        CHECK(std::abs(speed.z) < 0.02f * std::abs(speed.x));
+        CHECK(static_cast<float>(steps) > 60 * (off - 0.5f) / CharacterMotor{}.turn);
+        rises[i] = std::atan2(speed.y, -speed.x);
+        stage.world.destroy(ball);
+        stage.step(30);
+    }
+    CHECK(double(rises[1] - rises[0]) == near(0.5).epsilon(0.05));  // as the view
+}
+
+TEST_CASE("hero: is back where it stood when it has fallen off the world") {
+    HeroStage stage({make_box_mesh({-2, 4, -2}, {2, 5, 2})});
+    std::vector<Entity> planes;
+    stage.world.query<const Walkable, Without<MeshInstance>>().each(
+        [&](Entity entity, const Walkable&) { planes.push_back(entity); });
+    for (const Entity plane : planes) {
+        stage.world.destroy(plane);
+    }
+    stage.world.get<Transform>(stage.person).position = {0, 5, 0};
+    stage.step(30);
+    REQUIRE(stage.state().mode == MotorMode::Stand);
+    set_action(stage.world.resource<Input>(), "hero_forward");
+    float lowest = 5;
+    for (int i = 0; i < 400; ++i) {
+        stage.step();
+        lowest = std::min(lowest, stage.feet().y);
+        if (lowest < 0 && stage.feet().y > 4) {
+            set_action(stage.world.resource<Input>(), "hero_forward", 0);
+        }
+    }
+    CHECK(lowest < -10);
+    CHECK(stage.state().mode == MotorMode::Stand);
+    CHECK(double(stage.feet().y) == near(5).epsilon(1e-3));
+    CHECK(std::abs(stage.feet().z) < 1.8f);
+    // Not one that shall not.
+    stage.world.get<Hero>(stage.person).lost = 0;
+    set_action(stage.world.resource<Input>(), "hero_forward");
+    stage.step(600);
+    CHECK(stage.feet().y < -50);
 }
 
 TEST_CASE("hero: what it picks up waits for the hands, then rises without a jump") {

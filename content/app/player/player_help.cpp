@@ -134,7 +134,7 @@ std::string describe_group(const ActionGroup& group, const Bindings* bindings) {
     for (const KeyHelp& line : lines) {
         text += line.keys.empty()
                     ? line.text + ":"
-                    : (text.ends_with(':') ? " " : "; ") + line.keys + ' ' + line.text;
+                    : (text.ends_with(':') ? " " : " \u00b7 ") + line.keys + ' ' + line.text;
     }
     return text;
 }

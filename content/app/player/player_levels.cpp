@@ -65,6 +65,10 @@ Status Player::load(const std::string& scene, const std::string& show) {
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
     follow_sounds();
     warm_up_level();
+    if (const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera)) {
+        hud_->toast(
+            describe_group(*driver, std::as_const(stage_->world).find_resource<Bindings>()));
+    }
     return Done{};
 }
 
