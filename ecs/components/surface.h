@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/dress.h"
 #include "ecs/components/path.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/reflect.h"
@@ -287,6 +288,7 @@ struct Material {
     float tessellation = 6.0f;
     NormalMips normal_mips = NormalMips::Plain;
     BumpShadow bump_shadow = BumpShadow::None;
+    Dress dress = {};
     TextureSlot base_color_texture = {};
     TextureSlot metal_rough_texture = {};
     TextureSlot normal_texture = {};
@@ -435,6 +437,7 @@ LIMN_FIELDS(Material) {
         bump_shadow,
         .doc = "light on bumps that face it where the mesh faces away: all, none, or less",
         .values = "none gate smooth ramp");
+    LIMN_FIELD(dress, "of a person in one mesh: colors and patterns of its parts");
     LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
     LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");

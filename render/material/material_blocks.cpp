@@ -10,6 +10,7 @@
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
 #include "render/shaders/material_clear_gpu.h"
+#include "render/shaders/material_dress_gpu.h"
 #include "render/shaders/material_lafortune_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
 #include "render/shaders/material_strand_gpu.h"
@@ -133,6 +134,26 @@ std::optional<layout::SubsurfaceBlock> make_subsurface_block(const Material& m) 
     return block;
 }
 
+static_assert(static_cast<int>(ClothPattern::Twill) == layout::kPatternTwill);
+static_assert(static_cast<std::uint32_t>(DressedPart::Other) == layout::kPersonOther);
+
+std::optional<layout::DressBlock> make_dress_block(const Material& m) {
+    const Dress& dress = m.dress;
+    if (dress == Dress{}) {
+        return std::nullopt;
+    }
+    const auto factor = [](const DressPart& part) {
+        return Vec4(part.color, std::max(part.repeat, 1e-3f));
+    };
+    const auto ink = [](const DressPart& part) {
+        return Vec4(part.ink, static_cast<float>(part.pattern));
+    };
+    return layout::DressBlock{
+        .factors =
+            {Vec4(dress.hair, 1), Vec4(dress.skin, 1), factor(dress.shirt), factor(dress.legs)},
+        .inks = {ink(dress.shirt), ink(dress.legs)}};
+}
+
 struct BlockKind {
     std::uint32_t number;
     std::uint32_t texels;  ///< maximum size
@@ -164,6 +185,7 @@ constexpr BlockKind kKinds[] = {
     block_kind<make_clear_block>(layout::kClearBlock, false),
     block_kind<make_layers_block>(layout::kLayersBlock, false),
     block_kind<make_relief_block>(layout::kReliefBlock, false),
+    block_kind<make_dress_block>(layout::kDressBlock, false),
     block_kind<make_classic_block>(layout::kClassicBlock, false),
     block_kind<make_skin_block>(layout::kSkinBlock, true),
     block_kind<make_lafortune_block>(layout::kLafortuneBlock, true),

@@ -214,6 +214,7 @@ void MaterialPool::add_material(const Material& material) {
     batch.features.bits |= (layers & kAnisotropyLayer) != 0 ? kAnisotropic : 0u;
     batch.features.bits |= has_lean_normals(material) ? kLeanNormals : 0u;
     batch.features.bits |= bump_feature(material.bump_shadow);
+    batch.features.bits |= material.dress != Dress{} ? kDressed : 0u;
     add_maps(material, batch, record);
     if (batch.features.maps.has(layout::kNormalSlot)
         && (material.shading == ShadingModel::Blinn || material.shading == ShadingModel::Phong)) {

@@ -33,6 +33,7 @@ constexpr FeatureName kNames[] = {
     {kBumpSmooth, "BUMP_SMOOTH"},
     {kBumpRamp, "BUMP_RAMP"},
     {kClassicBumps, "CLASSIC_BUMPS"},
+    {kDressed, "DRESSED"},
 };
 
 constexpr bool has_bits_of_their_own() {

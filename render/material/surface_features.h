@@ -34,6 +34,7 @@ enum SurfaceFeature : std::uint32_t {
     kBumpSmooth = 1u << 18,
     kBumpRamp = 1u << 19,
     kClassicBumps = 1u << 20,  // of Blinn and Phong, with a normal map (bump_strategy.h)
+    kDressed = 1u << 21,       // of persons whose vertex colors have parts (Dress)
 };
 
 struct SurfaceFeatures {

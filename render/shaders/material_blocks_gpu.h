@@ -21,6 +21,7 @@ const uint kLayersBlock = 7u;      // material_layers_gpu.h
 const uint kReliefBlock = 8u;      // relief_gpu.h
 const uint kToonBlock = 9u;        // material_toon_gpu.h
 const uint kStrandBlock = 10u;     // material_strand_gpu.h
+const uint kDressBlock = 11u;      // material_dress_gpu.h
 
 const uint kBlockOffsetBits = 6u;
 const uint kBlocksPerFloat = 4u;

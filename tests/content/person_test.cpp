@@ -1,5 +1,6 @@
 #include "content/make/person/person.h"
 #include "ecs/base/jobs.h"
+#include "ecs/components/dress.h"
 #include "ecs/components/humanoid.h"
 #include "tests/content/mesh_laws.h"
 #include "tests/content/posed_person.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -116,6 +118,27 @@ TEST_CASE("person: every part is a closed two-manifold that faces outwards") {
                 CHECK(worst_facing(mesh) > 0.2f);
             }
         }
+    }
+}
+
+TEST_CASE("person: in one mesh, the alpha of vertex colors says which part they are of") {
+    constexpr std::array<DressedPart, 6> kDressed = {DressedPart::Skin, DressedPart::Other,
+                                                     DressedPart::Hair, DressedPart::Shirt,
+                                                     DressedPart::Legs, DressedPart::Other};
+    for (const PersonShape& shape : {kPeople[0], kPeople[2]}) {
+        const MeshData whole = make_person(shape);
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < kParts.size(); ++i) {
+            const std::size_t count = make_person(with_part(shape, kParts[i])).positions.size();
+            REQUIRE(first + count <= whole.colors.size());
+            bool same = true;
+            for (std::size_t v = first; v < first + count; ++v) {
+                same = same && whole.colors[v].w == alpha_of_part(kDressed[i]);
+            }
+            CHECK(same);
+            first += count;
+        }
+        CHECK(first == whole.colors.size());
     }
 }
 

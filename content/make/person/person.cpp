@@ -9,6 +9,7 @@
 #include "content/make/person/person_face.h"
 #include "content/make/person/person_growth.h"
 #include "content/make/person/person_parts.h"
+#include "ecs/components/dress.h"
 
 #include <algorithm>
 #include <array>
@@ -65,6 +66,21 @@ MeshData make_skin(const PersonFrame& frame) {
     return mesh;
 }
 
+DressedPart dressed_part(PersonPart part) {
+    switch (part) {
+    case PersonPart::Skin:
+        return DressedPart::Skin;
+    case PersonPart::Hair:
+        return DressedPart::Hair;
+    case PersonPart::Shirt:
+        return DressedPart::Shirt;
+    case PersonPart::Trousers:
+        return DressedPart::Legs;
+    default:
+        return DressedPart::Other;
+    }
+}
+
 MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     BodyMesh mesh;
     BodyMesh trims;
@@ -109,7 +125,11 @@ MeshData make_person_part(const PersonFrame& frame, PersonPart part) {
     for (const PersonPart each :
          {PersonPart::Skin, PersonPart::Eyes, PersonPart::Hair, PersonPart::Shirt,
           PersonPart::Trousers, PersonPart::Shoes}) {
-        append_part(whole, make_person_part(frame, each));
+        MeshData mesh_of_part = make_person_part(frame, each);
+        for (Vec4& color : mesh_of_part.colors) {
+            color.w = alpha_of_part(dressed_part(each));
+        }
+        append_part(whole, mesh_of_part);
     }
     return whole;
 }

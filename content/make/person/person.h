@@ -17,7 +17,8 @@ namespace limn {
 // anatomical limits. Every person is another one: what is left open is chosen by `seed`.
 //
 // Each part is a mesh with its own material; "all" is everything in one. Vertex colors are the
-// colors of skin, cloth and hair, for white materials. Texture coordinates are meters, except for
+// colors of skin, cloth and hair, for white materials; of "all", their alpha is the part, for the
+// Dress of a material. Texture coordinates are meters, except for
 // the face, whose chart is that of the head; v runs along strands of hair from roots to tips.
 // Morph targets follow elbows, knees, hips and shoulders that bend (bend_shapes.h), but not in
 // levels of detail; those of the face (person_face.h) are also in near ones. Clips: "idle", and for

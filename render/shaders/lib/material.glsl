@@ -9,6 +9,7 @@
 //   UV_MAP, UV_MAPS  of lib/material_maps.glsl
 //   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
+//   DRESSED        with VERTEX_COLOR: its alpha says which part of a person it is (lib/dress.glsl)
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   SHIFTED_UV     hooks shift the texture coordinates, whose derivatives are then those from before
 //   OFF_MESH       hooks find the visible point off the mesh, or a hole
@@ -100,6 +101,9 @@ vec4 base_color_texel() {
 }
 
 #include "generated/surface_hooks.glsl"
+#if defined(DRESSED) && defined(VERTEX_COLOR)
+#include "lib/dress.glsl"
+#endif
 
 #ifdef NORMAL_MAP
 #define FINE_NORMALS
@@ -109,7 +113,9 @@ vec4 surface_color() {
     hook_uv(map_uv);
     vec4 color = material_texel(0) * base_color_texel();
     hook_color(color);
-#ifdef VERTEX_COLOR
+#if defined(DRESSED) && defined(VERTEX_COLOR)
+    color.rgb *= max(vertex_color.rgb, 0.0) * dress_factor(material_and_flags.x, vertex_color.a, uv.xy);
+#elif defined(VERTEX_COLOR)
     color *= max(vertex_color, 0.0);
 #endif
     return color;
