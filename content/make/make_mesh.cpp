@@ -63,7 +63,7 @@ std::span<const MeshKind> mesh_kinds() {
             "bar", "a flexible bar around +y, with two joints and clips that twist and bend it"),
         mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
         mesh_kind<BodyPartShape, make_body_part>(
-            "body_part", "a hand, a foot or a forearm, upright, with its back to z"),
+            "body_part", "a hand or a foot, upright, with its back to z, its nails, or a forearm"),
         mesh_kind<BoulderShape, make_boulder>(
             "boulder", "a ball cut by planes, with worn edges and rough faces"),
         mesh_kind<BoxShape, make_box>("box", "a box, optionally with rounded edges"),

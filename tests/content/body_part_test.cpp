@@ -1,4 +1,5 @@
 #include "content/make/models/body_part.h"
+#include "content/make/models/even_triangles.h"
 #include "tests/near.h"
 #include "tests/technique.h"
 
@@ -14,6 +15,9 @@
 
 namespace limn::body_part_test {
 namespace {
+
+/// On the front half of the image or the back one, the planar map seen from that side.
+constexpr float kPlanarMiddle = 1.7f / 21.3f;  ///< of a hand, of its length
 
 constexpr std::array<BodyPartKind, 3> kAll = {
     BodyPartKind::Hand, BodyPartKind::Foot, BodyPartKind::Arm};
@@ -72,6 +76,7 @@ TEST_CASE(
     "body part: the planar map is the view from the front"
     * technique("wrinkle.furrow.map-planar")) {
     const MeshData mesh = make_body_part({.part = BodyPartKind::Hand, .length = 0.2f, .cells = 48});
+    bool inside = true;
     for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
         const std::uint32_t* const v = &mesh.indices[t];
         const Vec3 normal = glm::cross(
@@ -80,10 +85,17 @@ TEST_CASE(
         const float side = normal.z < 0 ? -1.0f : 1.0f;
         for (int k = 0; k < 3; ++k) {
             const Vec2 uv = mesh.uvs[v[k]];
-            CHECK(uv.x == test::near(0.5f + side * mesh.positions[v[k]].x / 0.2f).epsilon(1e-3));
-            CHECK(uv.y == test::near(0.5f - mesh.positions[v[k]].y / 0.2f).epsilon(1e-3));
+            const Vec3 p = mesh.positions[v[k]] / 0.2f;
+            const float middle = 0.5f - 0.25f * side;
+            CHECK(
+                uv.x
+                == test::near(middle + side * kBodyChartScale * (p.x - kPlanarMiddle))
+                       .epsilon(1e-3));
+            CHECK(uv.y == test::near(0.5f - kBodyChartScale * p.y).epsilon(1e-3));
+            inside = inside && uv.y > 0 && uv.y < 1 && std::abs(uv.x - middle) < 0.25f;
         }
     }
+    CHECK(inside);
 }
 
 TEST_CASE(
@@ -99,6 +111,53 @@ TEST_CASE(
         widest = std::max(widest, side ? width : 0.0f);
     }
     CHECK(widest < 0.1f);
+}
+
+TEST_CASE("body part: its triangles are no slivers, and its normals are those of its faces") {
+    for (const BodyPartKind part : kAll) {
+        CAPTURE(static_cast<int>(part));
+        const MeshData mesh = make_body_part({.part = part, .length = 0.2f, .cells = 64});
+        double sum = 0;
+        int poor = 0;
+        double facing = 0;
+        for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+            const auto at = [&](std::size_t k) { return mesh.positions[mesh.indices[t + k]]; };
+            const float quality = triangle_quality(at(0), at(1), at(2));
+            sum += static_cast<double>(quality);
+            poor += quality < 0.5f ? 1 : 0;
+            const Vec3 normal = glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
+            facing += static_cast<double>(glm::dot(normal, mesh.normals[mesh.indices[t]]));
+        }
+        const double count = static_cast<double>(mesh.indices.size() / 3);
+        CHECK(sum / count > 0.95);  // 0.85 without flips and collapses
+        CHECK(poor <= static_cast<int>(count / 2000));
+        CHECK(facing / count > 0.98);
+    }
+}
+
+TEST_CASE("body part: fingers taper, and each has a nail that lies on its skin") {
+    const MeshData hand = make_body_part({.part = BodyPartKind::Hand, .length = 0.2f, .cells = 64});
+    const MeshData nails = make_body_part({.part = BodyPartKind::HandNails, .length = 0.2f});
+    const std::size_t per_nail = nails.positions.size() / 5;
+    CHECK(per_nail * 5 == nails.positions.size());
+    for (std::size_t i = 0; i < nails.positions.size(); ++i) {
+        float nearest = 1;
+        for (const Vec3& p : hand.positions) {
+            nearest = std::min(nearest, glm::distance(p, nails.positions[i]));
+        }
+        CHECK(nearest < 0.004f);  // on the skin, or free of it by the length of a free edge
+    }
+    // Width of the middle finger at its base, and close to its tip.
+    const auto width = [&](float from, float to) {
+        Vec2 range = {1, -1};
+        for (const Vec3& p : hand.positions) {
+            if (p.y > from && p.y < to && p.x > -0.003f && p.x < 0.02f) {
+                range = {std::min(range.x, p.x), std::max(range.y, p.x)};
+            }
+        }
+        return range.y - range.x;
+    };
+    CHECK(width(0.09f, 0.096f) < 0.85f * width(0.04f, 0.046f));
 }
 
 }  // namespace

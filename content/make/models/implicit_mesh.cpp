@@ -165,9 +165,11 @@ Vec3 project_to_surface(const SignedDistance& distance, Vec3 p, float cell) {
     return p;
 }
 
-void relax(const SignedDistance& distance, const ImplicitGrid& grid, ImplicitMesh& mesh) {
+}  // namespace
+
+void relax_on_surface(ImplicitMesh& mesh, const SignedDistance& distance, float cell, int rounds) {
     const std::size_t count = mesh.positions.size();
-    for (int round = 0; round < grid.relaxations; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         std::vector<Vec3> sums(count, Vec3(0));
         std::vector<float> neighbors(count, 0.0f);
         for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
@@ -180,14 +182,12 @@ void relax(const SignedDistance& distance, const ImplicitGrid& grid, ImplicitMes
             for (std::size_t v = begin; v < end; ++v) {
                 const Vec3 centroid =
                     neighbors[v] > 0.0f ? sums[v] / neighbors[v] : mesh.positions[v];
-                mesh.positions[v] = project_to_surface(
-                    distance, glm::mix(mesh.positions[v], centroid, 0.5f), grid.cell);
+                mesh.positions[v] =
+                    project_to_surface(distance, glm::mix(mesh.positions[v], centroid, 0.5f), cell);
             }
         });
     }
 }
-
-}  // namespace
 
 Vec3 surface_normal(const SignedDistance& distance, const Vec3& p, float step) {
     const Vec3 slope(
@@ -219,7 +219,7 @@ ImplicitMesh mesh_surface(const SignedDistance& distance, const ImplicitGrid& gr
         }
     }
     add_faces(samples, vertex_of, mesh);
-    relax(distance, grid, mesh);
+    relax_on_surface(mesh, distance, grid.cell, grid.relaxations);
     mesh.normals.resize(mesh.positions.size());
     parallel_for(mesh.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {

@@ -30,6 +30,10 @@ struct ImplicitMesh {
 
 [[nodiscard]] ImplicitMesh mesh_surface(const SignedDistance& distance, const ImplicitGrid& grid);
 
+/// Moves vertices halfway to the mean of their neighbors, then back onto the surface, by half a
+/// `cell` at once.
+void relax_on_surface(ImplicitMesh& mesh, const SignedDistance& distance, float cell, int rounds);
+
 /// Unit gradient of `distance` at `p`, by central differences over +-`step`.
 [[nodiscard]] Vec3 surface_normal(const SignedDistance& distance, const Vec3& p, float step);
 

@@ -1,5 +1,7 @@
 #include "content/make/models/implicit_model.h"
 
+#include "content/make/models/loft.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -81,6 +83,8 @@ float part_distance(const ModelPart& part, const Vec3& p) {
         return part.a.y - p.y;
     case PartShape::Before:
         return part.a.z - p.z;
+    case PartShape::Loft:
+        return loft_distance(*part.loft, p);
     case PartShape::Custom:
         return part.distance(p);
     }

@@ -7,6 +7,8 @@
 
 namespace limn {
 
+struct Loft;
+
 // Bodies as tables of blended primitives (content/models), to be triangulated by mesh_surface
 // (implicit_mesh.h).
 
@@ -17,6 +19,7 @@ enum class PartShape : std::uint8_t {
     Box,        ///< `a`: center, `b`: half size; edges rounded by `radius_a`
     Above,      ///< the half space above `a`
     Before,     ///< the half space before `a`, toward +z
+    Loft,       ///< `loft`
     Custom,     ///< `distance`
 };
 
@@ -36,6 +39,7 @@ struct ModelPart {
     float radius_a = 0;
     float radius_b = 0;
     Vec3 squash = {1, 1, 1};
+    const Loft* loft = nullptr;
     float (*distance)(const Vec3& p) = nullptr;
     std::uint16_t joint = 0;  ///< joint of a skeleton that the part follows
 };

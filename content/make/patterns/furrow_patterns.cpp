@@ -2,6 +2,7 @@
 
 #include "content/bake/furrow_map.h"
 #include "content/bake/skin_cells.h"
+#include "content/make/models/body_part.h"
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
 #include "ecs/components/surface.h"
@@ -110,6 +111,11 @@ Relief make_relief(const FurrowsPattern& pattern) {
 }  // namespace
 
 MeshData make_furrow_surface(FurrowSurface surface) {
+    if (surface == FurrowSurface::Hand || surface == FurrowSurface::Foot) {
+        const bool hand = surface == FurrowSurface::Hand;
+        return make_body_part(
+            {.part = hand ? BodyPartKind::Hand : BodyPartKind::Foot, .length = 1, .cells = 64});
+    }
     MeshData mesh;
     mesh.name = "furrows";
     const float radius = 1.0f / (2.0f * kPi);

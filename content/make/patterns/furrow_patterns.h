@@ -15,6 +15,8 @@ enum class FurrowSurface : std::uint8_t {
     Square,  ///< flat, faces +z, from -0.5 to 0.5 m; with uv its image tiles
     Pad,     ///< the same with a round elevation
     Limb,    ///< a tube around y, 1 m high and around; its image is for u around, v along
+    Hand,    ///< a body part of 1 m, whose texture coordinates its image is for (body_part.h)
+    Foot,
 };
 
 struct FurrowsPattern {
@@ -29,7 +31,7 @@ struct FurrowsPattern {
 
 LIMN_FIELDS(FurrowsPattern) {
     visit_fields(self.recipe, visit);
-    LIMN_FIELD(surface, .doc = "surface on which they grow", .values = "square pad limb");
+    LIMN_FIELD(surface, .doc = "surface on which they grow", .values = "square pad limb hand foot");
     LIMN_FIELD(smooth_normals, "normals include the curvature of the flattened surface");
     LIMN_FIELD(cells, "finest relief: isotropic cells along each side; 0: none", "", 0, 256);
     LIMN_FIELD(cell_depth, "depth of the edges between cells", "", 0, 1);
