@@ -15,6 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -307,6 +308,25 @@ float lip_gap(std::string_view name) {
         }
     }
     return gap;
+}
+
+TEST_CASE("head expressions: an open mouth is round, not a diamond") {
+    for (const char* const name : {"AU26", "AU27"}) {
+        CAPTURE(name);
+        const std::vector<Vec3> offsets = offsets_of(shape_called(name));
+        float middle = 0;
+        float halfway = 0;
+        for (std::size_t i = 0; i < skin().size(); ++i) {
+            const HeadPoint& point = skin()[i];
+            const bool lower = point.loops == HeadLoops::Mouth && point.loop == kLipLoop
+                               && std::sin(point.angle) < 0;
+            const float across = lower ? std::abs(across_mouth(point.angle)) : 1.0f;
+            middle = std::max(middle, across < 0.1f ? -offsets[i].y : 0.0f);
+            halfway = std::max(halfway, across > 0.48f && across < 0.62f ? -offsets[i].y : 0.0f);
+        }
+        CHECK(middle > 0.5f);
+        CHECK(halfway > 0.7f * middle);  // a diamond has half, a parabola three quarters
+    }
 }
 
 TEST_CASE(

@@ -347,7 +347,7 @@ HeadPoint skin_point(const HeadVertex& vertex, const Vec3& rest) {
     point.loops = vertex.loops;
     point.loop = vertex.loop;
     point.angle = vertex.angle;
-    const float open = std::pow(1 - square(across_mouth(vertex.angle)), 1.5f);
+    const float open = 1 - square(across_mouth(vertex.angle));
     point.upper_lip = vertex.loops == HeadLoops::Mouth
                           ? 0.5f + std::copysign(0.5f, std::sin(vertex.angle)) * open
                           : glm::smoothstep(-1.8f, 1.8f, rest.y + 3.4f);
