@@ -85,8 +85,9 @@ Vec3 brow_line(float t) {
 void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
     const int count = 520 + static_cast<int>(120 * shape.sex);
     for (int i = 0; i < count; ++i) {
-        const float t = random.uniform() - 0.12f * random.uniform();
-        const float height = 0.38f * (1 - 0.7f * t * t) * glm::smoothstep(-0.3f, 0.2f, t)
+        const float u = random.uniform();  // sparser towards its end
+        const float t = u * (0.75f + 0.25f * u) - 0.12f * random.uniform();
+        const float height = 0.38f * (1 - 0.5f * t * t) * glm::smoothstep(-0.3f, 0.2f, t)
                              * (0.85f + 0.2f * shape.sex);
         const float v = random.uniform() + random.uniform() - 1;
         Vec3 root = brow_line(t) + Vec3(0, v * height, 10);
@@ -94,13 +95,13 @@ void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
         // Upright beside the nose, then along the brow and towards its center line.
         const Vec3 ahead =
             glm::normalize(brow_line(std::min(t + 0.02f, 1.0f)) - brow_line(t - 0.01f));
-        const float rise = glm::mix(1.6f, 0.1f, glm::smoothstep(-0.1f, 0.4f, t)) - 0.75f * v * t;
+        const float rise = glm::mix(1.6f, 0.1f, glm::smoothstep(-0.1f, 0.4f, t)) - 0.3f * v * t;
         const Vec3 out = glm::normalize(head_gradient(root, shape, 1));
         const Vec3 lay = glm::normalize(
             ahead + Vec3(0, rise, 0)
             + 0.25f * Vec3(random.uniform() - 0.5f, random.uniform() - 0.5f, 0));
         const Vec3 along = glm::normalize(lay - glm::dot(lay, out) * out);
-        const float length = (0.75f - 0.25f * t) * (0.7f + 0.5f * random.uniform());
+        const float length = (0.75f - 0.35f * t) * (0.7f + 0.5f * random.uniform());
         Strand strand;
         strand.root = root - 0.02f * out;
         strand.control = root + 0.5f * length * along + 0.09f * out;
@@ -108,7 +109,9 @@ void add_brows(HeadPart& part, Random& random, const HeadShape& shape) {
         strand.tip -= head_distance(strand.tip, shape, 1) * out - 0.05f * out;
         strand.across = glm::normalize(glm::cross(out, along));
         strand.rows = 3;  // within 0.1 mm of the curve
-        strand.width = 0.017f * glm::smoothstep(-0.3f, 0.15f, t) + 0.002f;
+        strand.width =
+            0.017f * glm::smoothstep(-0.3f, 0.15f, t) * (1 - 0.5f * glm::smoothstep(0.5f, 1.0f, t))
+            + 0.002f;
         append_both(part, strand, 0.7f + 0.6f * random.uniform());
     }
 }
