@@ -93,7 +93,9 @@ void main() {
     vec3 transmittance = exp(-extinction * through.path);
     vec3 refracted = through.color * transmittance + glow * (1.0 - transmittance);
     vec3 away = reflect(-to_camera, normal);
-    vec3 around = environment_light(position, normal, away, roughness).mirrored;
+    vec3 around = environment_light(position, normal, above ? vec3(away.x, abs(away.y), away.z) : away, roughness).mirrored;
+    // Where a ray goes down, it meets the water again, which glows and reflects as if it were flat.
+    around = above && away.y < 0.0 ? mix(glow, around, water_reflectance(water, above, -away.y)) : around;
     Side side = Side(water.origin.y - 0.02, 1.0);
 #ifdef FROM_BELOW
     vec3 scattered = scattered_light(water, 0.0, away);
@@ -107,7 +109,7 @@ void main() {
 #endif
     RayHit hit = RayHit(around, kInfiniteDistance);
 #if defined(FROM_BELOW) || !defined(NO_SCREEN_REFLECTION)
-    hit = trace_reflection(position, away, around, side);
+    hit = trace_reflection(position, away, around, side, fwidth(float(visible.body)) == 0.0);
 #endif
 #ifdef LOOKS
     bool traced = !above || reflection_of(water) == kScreenReflection;

@@ -1,3 +1,4 @@
+#include "ecs/base/math.h"
 #include "ecs/base/optics.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
@@ -262,6 +263,79 @@ TEST_CASE_FIXTURE(
     CAPTURE(wrong);
     CHECK(objects > 1500);
     CHECK(wrong < 0.05 * objects);
+}
+
+TEST_CASE_FIXTURE(
+    Look, "water reflection: traced on screen, what a ray passes far behind is not reflected") {
+    // A blue ramp that rises away from the camera, with a red edge, before a distant green wall. In
+    // the image, rays from the water cross it from below: those close behind may show its edge,
+    // none what is above, however near they get.
+    const auto board = [&](const Vec3& center, const Vec2& half, float pitch, const Vec3& color) {
+        place(
+            add(make_square()),
+            add(Material{.shading = ShadingModel::Unlit, .base_color = Vec4(color, 1)}),
+            affine_from(center, glm::angleAxis(pitch, Vec3(1, 0, 0)), Vec3(half, 1)));
+    };
+    const Vec2 rise = {0.5f, 6};
+    const float pitch = -std::atan2(rise.y, rise.x);
+    const auto on_ramp = [&](float at) { return Vec3(0, 0.95f + at * rise.x, -4 - at * rise.y); };
+    const float length = glm::length(rise);
+    board(on_ramp(0.05f), {9, 0.05f * length}, pitch, {0.9f, 0.1f, 0.1f});
+    board(on_ramp(0.55f), {9, 0.45f * length}, pitch, {0.1f, 0.1f, 0.9f});
+    board({0, 4, -14}, {40, 8}, 0, {0.1f, 0.9f, 0.2f});
+    const Vec3 eye = {0, 1.6f, 2};
+    const Vec3 target = {0.6f, 0.9f, -4};
+    const auto mirrored = [](const Vec3& p) { return Vec3(p.x, 2 * kLevel - p.y, p.z); };
+    constexpr int kSide = 240;
+    const gpu::FloatImage truth = radiance(look(mirrored(eye), mirrored(target), kSide, kSide));
+    pour(kMirror);
+    const RenderView view = look(eye, target, kSide, kSide);
+    const gpu::FloatImage image = radiance(view);
+    const gpu::FloatImage depth = aov(view, "depth");
+    const auto is_blue = [](const Vec3& color) { return color.z > 2 * color.y; };
+    int tested = 0;
+    int wrong = 0;
+    for (int y = 4; y < kSide - 4; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            const Vec3 ray = ray_through(view, x, y);
+            const bool is_water = std::abs(point_at(view, depth, x, y).y - kLevel) < 1e-3f;
+            bool mirrors_board = false;  // within two pixels
+            for (int dy = -2; dy <= 2; ++dy) {
+                mirrors_board = mirrors_board || is_blue(rgb_at(truth, x, kSide - 1 - y + dy));
+            }
+            if (ray.y < -0.02f && is_water && !mirrors_board) {
+                wrong += is_blue(rgb_at(image, x, y)) ? 1 : 0;
+                ++tested;
+            }
+        }
+    }
+    CAPTURE(wrong);
+    CHECK(tested > 10'000);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE_FIXTURE(
+    Look, "water reflection: a mirrored ray that goes down meets the water, not the ground") {
+    // Waves so steep that they mirror one another.
+    world.resource<Environment>() = {
+        .sky = SkyKind::Gradient, .zenith = {0, 0, 1}, .horizon = {0, 0, 1}, .ground = {1, 0, 0}};
+    const Entity pond = pour({.size = {60, 60}, .absorption = Vec3(1000), .scattering = Vec3(0)});
+    WaveTable table;
+    fill_wave_table(
+        world.get<Water>(pond),
+        {.waves = {{.amplitude = 0.3f, .length = 2.5f, .direction = kPi / 2}}}, 2.5, table);
+    world.add(pond, table);
+    const gpu::FloatImage image = radiance(look({0, 1.6f, 4}, {0, 0.9f, -4}, 96, 96));
+    double red = 0;
+    double blue = 0;
+    for (int y = 60; y < 96; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            red += image.at(x, y, 0);
+            blue += image.at(x, y, 2);
+        }
+    }
+    CHECK(blue > 100);
+    CHECK(red < 0.01 * blue);
 }
 
 TEST_CASE_FIXTURE(

@@ -14,6 +14,12 @@ const float kMaxMirrorSteps = 48.0;
 const float kMirrorDistance = 2000.0; // maximum length of a ray [m]
 const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of the surfaces they hit, relative to the path, by eye
+const float kNothing = 1e9;
+const float kFarther = 0.8;           // ratio of the reciprocal distances of a surface and one before it
+const float kMaxSpread = 6.0;         // between hits of neighboring pixels on the same surface [px]
+const float kApproach = 0.25;         // how much less a ray and one surface differ in reciprocal distance after bisection
+const float kPastEdge = 2.0;          // of the surface that hid a ray [px]
+const int kPasses = 3;                // behind surfaces that a ray seemed to hit
 const int kBendSteps = 8;
 const float kOpenDistance = 150.0;    // of refracted rays in pixels without ground: farther hits are ignored [m]
 // After a hit, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel iterates as long as the loop of a neighbor
@@ -55,6 +61,19 @@ vec2 clamp_to_screen(vec2 pixel) {
 vec3 radiance_at(vec2 pixel) {
     return texelFetch(behind_radiance, ivec2(pixel), 0).rgb;
 }
+// Mean over a pixel of the water whose center sees `pixel`; `is_inside`: so are its neighbors, if they see the same.
+vec3 mean_radiance_at(vec2 pixel, bool is_inside) {
+    vec2 across = dFdx(pixel);
+    vec2 down = dFdy(pixel);
+    across = is_inside && length(across) > 1.0 && length(across) < kMaxSpread ? across : vec2(0.0);
+    down = is_inside && length(down) > 1.0 && length(down) < kMaxSpread ? down : vec2(0.0);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {  // a rotated grid
+        vec2 at = 0.25 * vec2(i, (2 * i + 1) % 5) - 0.375;
+        sum += radiance_at(clamp_to_screen(pixel + at.x * across + at.y * down));
+    }
+    return 0.25 * sum;
+}
 float height_of(vec2 pixel, float distance) {
     return view.camera_ws.y + view_ray(pixel).y * distance;
 }
@@ -77,6 +96,12 @@ float blocking_nearness(vec2 pixel, Side side) {
     float near = texelFetch(behind_depth, ivec2(pixel), 0).r / view.camera_ws.w;
     float up = view_ray(pixel).y + (view.camera_ws.y - side.level) * near;  // of the surface, divided by its distance
     return near > 0.0 && side.up * up > 0.0 ? near : 1.0 / kInfiniteDistance;
+}
+
+// Reciprocal distance of the water at rest in a pixel [1/m].
+float nearness_of_water(vec2 pixel, Side side) {
+    float over = view.camera_ws.y - side.level;
+    return -view_ray(pixel).y / (abs(over) < 1e-3 ? 1e-3 : over);
 }
 
 // Empty-space skipping: distance, in units of `along` and up to `end`, that a ray from `from` [px] crosses the image
@@ -103,8 +128,9 @@ float clear_distance(vec2 from, vec2 along, float end, Side side) {
 
 // Radiance along a reflected ray: from the image where the ray hits something on screen, else `around`, at infinite
 // distance. The ray is marched in the image, where pixels and the reciprocal of the distance are linear, until it
-// leaves the screen; steps grow from the first tile with anything above the water.
-RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
+// leaves the screen; steps grow from the first tile with anything above the water. `is_inside`: the neighbors of the
+// pixel are of the same water.
+RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, bool is_inside) {
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
     vec2 along = ray.along.xy - ray.along.z * from;  // pixel = from + u * along, with u = path / distance
@@ -119,47 +145,70 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side) {
     float low = u_begin;
     float high = u_begin;
     float inverse_from = 1.0 / ray.from.z;
-    float z = ray.from.z / (1.0 - u_begin * ray.along.z);
-    float ahead = 1.0;  // difference of the reciprocal distances of ray and surface: at low
+    float ahead = 0.0;  // difference of the reciprocal distances of ray and surface: at low
     float behind;       // and at high
+    float hiding = kNothing;  // reciprocal distance of the surface that hides the ray at low
     bool met = false;
     float step = 0.0;
+    float u;
+    float path;
+    float trust;
+    bool is_one;
+    int passes = 0;
     do {
-        float fraction = min(++step / count, 1.0);
-        high = met ? high : u_begin + rest * fraction * (0.3 + 0.7 * fraction);
-        float surface = blocking_nearness(from + high * along, side);
-        // A surface that it passes far behind does not stop it; under water, where there is no sky to fall back to, any
-        // does.
-        bool near = side.up < 0.0 || (z - kMirrorThickness * low * z - 0.05) * surface < 1.0;
-        float nearness = (1.0 - high * ray.along.z) * inverse_from;
-        z = 1.0 / nearness;
-        behind = surface - nearness;
-        met = met || (near && behind > 0.0);
-        ahead = met ? ahead : -behind;
-        low = met ? low : high;
+        float surface;
+        do {
+            float fraction = min(++step / count, 1.0);
+            high = met ? high : u_begin + rest * fraction * (0.3 + 0.7 * fraction);
+            surface = blocking_nearness(from + high * along, side);
+            // As long as a surface hides it, it cannot hit that surface; under water, where there is no sky to fall back
+            // to, it does.
+            float nearness = (1.0 - high * ray.along.z) * inverse_from;
+            behind = surface - nearness;
+            met = met || (behind > 0.0 && (surface < kFarther * hiding || side.up < 0.0));
+            ahead = met ? ahead : -behind;
+            low = met ? low : high;
+            hiding = met ? hiding : behind > 0.0 ? surface : kNothing;
+        } while (!met && step < count);
+        // It passed behind a surface in the last step, or from behind one surface to behind another: bisect, and assume
+        // a plane between the last two points unless they are on different surfaces.
+        float other = hiding < kNothing ? 0.5 * (hiding + surface) : kNothing;
+        float last = high;
+        float apart_at_first = ahead + behind;
+        vec2 ends = vec2(hiding, surface);
+        int steps = 0;
+        do {
+            float midpoint = 0.5 * (low + high);
+            float there = blocking_nearness(from + midpoint * along, side);
+            float nearness = (1.0 - midpoint * ray.along.z) * inverse_from;
+            float apart = there - nearness;
+            bool hidden = apart > 0.0 && there < other;
+            // A surface that stands in the water goes on below.
+            float above = nearness - nearness_of_water(from + midpoint * along, side);
+            ahead = hidden ? ahead : min(-apart, max(above, 0.0));
+            behind = hidden ? apart : behind;
+            ends = hidden ? vec2(ends.x, there) : vec2(there, ends.y);
+            low = hidden ? low : midpoint;
+            high = hidden ? midpoint : high;
+        } while (met && ++steps < kHalvings);
+        // On one surface, which bisection approaches, it lies between them; else, if it passes far behind the edge, it
+        // goes on.
+        float z = ray.from.z / (1.0 - high * ray.along.z);
+        float thickness = kMirrorThickness * high * z + 0.05;
+        is_one = ahead >= 0.0 && (ahead + behind) < max(thickness / (z * z), kApproach * apart_at_first);
+        u = !met ? u_end : is_one ? mix(low, high, ahead / (ahead + behind)) : high;
+        u += other < kNothing ? kPastEdge / length(along) : 0.0;
+        path = u * ray.from.z / (1.0 - u * ray.along.z);
+        bool recedes = other < kNothing && ends.x - ends.y < kApproach * (hiding - surface);
+        trust = recedes ? 0.0 : is_one ? 1.0 : clamp(3.5 - 2.0 * behind * z * z / thickness, 0.0, 1.0);
+        met = met && (trust > 0.0 || side.up < 0.0 || ++passes >= kPasses);
+        low = last;
+        hiding = surface;
     } while (!met && step < count);
-    // It passed behind a surface in the last step: bisect, and assume a plane between the last two points unless they
-    // are on different surfaces.
-    int steps = 0;
-    do {
-        float midpoint = 0.5 * (low + high);
-        float apart = blocking_nearness(from + midpoint * along, side) - (1.0 - midpoint * ray.along.z) * inverse_from;
-        bool hidden = apart > 0.0;
-        ahead = hidden ? ahead : -apart;
-        behind = hidden ? apart : behind;
-        low = hidden ? low : midpoint;
-        high = hidden ? midpoint : high;
-    } while (met && ++steps < kHalvings);
-    float u = !met ? u_end : ahead < 8.0 * behind ? mix(low, high, ahead / (ahead + behind)) : high;
-    z = ray.from.z / (1.0 - u * ray.along.z);
-    float path = u * z;
     vec2 hit = from + u * along;
-    vec3 color = radiance_at(hit);
-    // If it is far behind the occluder, its hit is not visible on screen.
-    float gap = abs(z - 1.0 / blocking_nearness(hit, side));
     vec2 edge = min(hit, view.size.xy - hit) * view.size.zw;
-    float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0)
-                  * clamp(2.0 - gap / (kMirrorThickness * path + 0.05), 0.0, 1.0);
+    trust *= clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0);
+    vec3 color = mean_radiance_at(hit, is_inside && is_one);
     trust = !met ? 0.0 : side.up > 0.0 ? trust : 1.0;
 #ifdef FROM_BELOW
     // Under water there is no sky to fall back to: extend the pixel where the ray leaves the screen.
