@@ -31,4 +31,12 @@ TEST_CASE("labels: none covers another, and what has no room is left out") {
     CHECK(layout.place({500, 100}, size, 5) == Vec2(505, 93.5f));
 }
 
+TEST_CASE("labels: left of the middle they are left of their points, where there is room") {
+    LabelLayout layout(300);
+    const Vec2 size(60, 13);
+    CHECK(layout.place({200, 100}, size, 5) == Vec2(135, 93.5f));
+    CHECK(layout.place({200, 100}, size, 5) == Vec2(205, 93.5f));
+    CHECK(layout.place({400, 200}, size, 5) == Vec2(405, 193.5f));
+}
+
 }  // namespace limn::label_layout_test

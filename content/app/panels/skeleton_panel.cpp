@@ -21,6 +21,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string>
+#include <string_view>
 
 // Techniques: anim.pose-keys, char.fk-keypose, char.ghost-view
 
@@ -30,10 +32,21 @@ namespace {
 constexpr float kCurveBefore = 1.5f;  // [s]
 constexpr float kCurveAfter = 1.5f;
 
-ImU32 color_of_curve(std::size_t curve) {
-    constexpr std::array<ImU32, 3> kColors = {
-        IM_COL32(110, 230, 110, 255), IM_COL32(255, 110, 110, 255), IM_COL32(120, 165, 255, 255)};
-    return kColors[curve % kColors.size()];
+ImVec4 panel_color(const Vec3& color) {
+    return {color.x, color.y, color.z, 1};
+}
+
+/// That of its axis; other axes in their order.
+ImU32 color_of_curve(const std::string& name, std::size_t curve) {
+    const std::size_t axis = std::string_view("xyz").find(name);
+    return ImGui::GetColorU32(
+        panel_color(kAxisColors[(axis < 3 ? axis : curve) % kAxisColors.size()]));
+}
+
+/// A word in the color of what it stands for, after others on the line.
+void legend(const Vec3& color, const char* word) {
+    ImGui::SameLine();
+    ImGui::TextColored(panel_color(color), "%s", word);
 }
 
 Ray ray_at(const RenderView& view, const PanelPointer& pointer) {
@@ -294,6 +307,22 @@ void SkeletonPanel::draw_view() {
     ImGui::Checkbox("Axes", &overlay_.axes);
     ImGui::SameLine();
     ImGui::Checkbox("Limits", &overlay_.limits);
+    if (overlay_.axes) {
+        ImGui::TextColored(kHudDim, "axes:");
+        constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+        for (std::size_t i = 0; i < kAxes.size(); ++i) {
+            legend(kAxisColors[i], kAxes[i]);
+        }
+    }
+    if (overlay_.limits) {
+        ImGui::TextColored(kHudDim, "limits:");
+        legend(kLimitColor, "the arc; bold: the angle now");
+    }
+    if (overlay_.ghosts > 0 || !overlay_.trails.empty()) {
+        ImGui::TextColored(kHudDim, "ghosts, trails:");
+        legend(kPastColor, "past");
+        legend(kFutureColor, "future");
+    }
     ImGui::SliderInt("Ghosts on each side", &overlay_.ghosts, 0, 12);
     ImGui::SliderFloat(
         "Time between", &overlay_.ghost_step, 0.02f, 1, "%.2f s", ImGuiSliderFlags_AlwaysClamp);
@@ -352,11 +381,12 @@ void SkeletonPanel::draw_curves(const HudStyle& style, const CharacterView& view
             points.emplace_back(x_of(found.begin + static_cast<float>(i) / 60.0f), y_of(values[i]));
         }
         list->AddPolyline(
-            points.data(), static_cast<int>(points.size()), color_of_curve(c), 0, 1.5f);
+            points.data(), static_cast<int>(points.size()), color_of_curve(found.curves[c].name, c),
+            0, 1.5f);
         list->AddText(
             {corner.x + size.x - static_cast<float>(found.curves.size() - c) * 46 * style.scale,
              corner.y + 2},
-            color_of_curve(c), found.curves[c].name.c_str());
+            color_of_curve(found.curves[c].name, c), found.curves[c].name.c_str());
     }
 }
 
@@ -377,7 +407,10 @@ void SkeletonPanel::draw_joints(const HudStyle& style, const CharacterView& view
         ImGui::PushID(j);
         const auto trail = std::ranges::find(overlay_.trails, j);
         const bool has_trail = trail != overlay_.trails.end();
-        if (ImGui::SmallButton(has_trail ? "T" : " ")) {
+        ImGui::PushStyleColor(ImGuiCol_Text, has_trail ? kHudAccent : kHudDim);
+        const bool toggles = ImGui::SmallButton("T");
+        ImGui::PopStyleColor();
+        if (toggles) {
             if (has_trail) {
                 overlay_.trails.erase(trail);
             } else {

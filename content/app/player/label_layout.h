@@ -11,8 +11,11 @@ namespace limn {
 /// asked for is the most important.
 class LabelLayout {
   public:
-    /// Top left corner of a label of this size [pixels], `gap` right, left, above or below of
-    /// `point`; none where all four are taken.
+    /// Labels of points left of `middle` [pixels] are rather left of them than right.
+    explicit LabelLayout(float middle = 0) : middle_(middle) {}
+
+    /// Top left corner of a label of this size [pixels], `gap` beside, above or below of `point`;
+    /// none where all four are taken.
     [[nodiscard]] std::optional<Vec2> place(const Vec2& point, const Vec2& size, float gap);
 
   private:
@@ -20,6 +23,7 @@ class LabelLayout {
         Vec2 min;
         Vec2 max;
     };
+    float middle_;
     std::vector<Box> taken_{};
 };
 

@@ -22,11 +22,6 @@ namespace {
 
 constexpr Vec3 kBoneColor = {0.95f, 0.95f, 0.9f};
 constexpr Vec3 kSelectedColor = {1.0f, 0.75f, 0.2f};
-constexpr Vec3 kPastColor = {0.35f, 0.65f, 1.0f};
-constexpr Vec3 kFutureColor = {1.0f, 0.5f, 0.35f};
-constexpr Vec3 kLimitColor = {0.85f, 0.45f, 1.0f};
-constexpr std::array<Vec3, 3> kAxisColors = {
-    Vec3(1.0f, 0.3f, 0.3f), Vec3(0.35f, 0.9f, 0.35f), Vec3(0.4f, 0.6f, 1.0f)};
 
 Vec3 joint_position(const Affine& world, const Affine& joint) {
     return transform_point(world, transform_point(joint, Vec3(0)));
@@ -180,7 +175,12 @@ void draw_names(
         }
     }
     std::ranges::stable_sort(names, std::ranges::greater{}, &Name::rank);
-    LabelLayout layout;
+    Vec3 center(0);
+    for (const Affine& joint : character.joints) {
+        center += joint_position(character.world_from_character, joint);
+    }
+    center /= static_cast<float>(std::max<std::size_t>(character.joints.size(), 1));
+    LabelLayout layout(find_pixel(view, center).value_or(Vec2(0)).x);
     WorldLines bones(view, kBoneColor);
     WorldLines marked(view, kSelectedColor);
     for (const Name& name : names) {

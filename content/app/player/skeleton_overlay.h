@@ -1,7 +1,9 @@
 #pragma once
 
 #include "content/app/player/skeleton_view.h"
+#include "ecs/base/math.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +11,13 @@ namespace limn {
 
 struct PoseGizmo;
 struct RenderView;
+
+// Colors of what is drawn, sRGB.
+inline constexpr Vec3 kPastColor = {0.35f, 0.65f, 1.0f};
+inline constexpr Vec3 kFutureColor = {1.0f, 0.5f, 0.35f};
+inline constexpr Vec3 kLimitColor = {0.85f, 0.45f, 1.0f};
+inline constexpr std::array<Vec3, 3> kAxisColors = {
+    Vec3(1.0f, 0.3f, 0.3f), Vec3(0.35f, 0.9f, 0.35f), Vec3(0.4f, 0.6f, 1.0f)};
 
 /// What is drawn over a character.
 struct SkeletonOverlay {

@@ -30,6 +30,15 @@ ImVec2 to_screen(const Vec4& clip) {
 
 }  // namespace
 
+std::optional<Vec2> find_pixel(const RenderView& view, const Vec3& at) {
+    const Vec4 clip = view.unjittered_from_world * Vec4(at, 1.0f);
+    if (clip.w < view.near) {
+        return std::nullopt;
+    }
+    const ImVec2 pixel = to_screen(clip);
+    return Vec2(pixel.x, pixel.y);
+}
+
 WorldLines::WorldLines(const RenderView& view, const Vec3& color, float opacity)
     : view_(view), color_(ImGui::GetColorU32({color.x, color.y, color.z, opacity})) {}
 
@@ -42,27 +51,25 @@ void WorldLines::draw_line(const Vec3& from, const Vec3& to, float width) {
 }
 
 void WorldLines::draw_point(const Vec3& at, float radius, const std::string& label) {
-    const Vec4 clip = view_.unjittered_from_world * Vec4(at, 1.0f);
-    if (clip.w < view_.near) {
+    const std::optional<Vec2> position = find_pixel(view_, at);
+    if (!position) {
         return;
     }
-    const ImVec2 position = to_screen(clip);
     ImDrawList* const list = ImGui::GetBackgroundDrawList();
-    list->AddCircleFilled(position, radius, color_);
+    list->AddCircleFilled({position->x, position->y}, radius, color_);
     if (!label.empty()) {
-        list->AddText({position.x + 2 * radius, position.y - 2 * radius}, color_, label.c_str());
+        list->AddText({position->x + 2 * radius, position->y - 2 * radius}, color_, label.c_str());
     }
 }
 
 void WorldLines::draw_label(const Vec3& at, const std::string& label, LabelLayout& layout) {
     constexpr float kGap = 6.0f;  // to the point [pixels]
-    const Vec4 clip = view_.unjittered_from_world * Vec4(at, 1.0f);
-    if (clip.w < view_.near) {
+    const std::optional<Vec2> position = find_pixel(view_, at);
+    if (!position) {
         return;
     }
-    const ImVec2 position = to_screen(clip);
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
-    if (const auto corner = layout.place({position.x, position.y}, {size.x, size.y}, kGap)) {
+    if (const auto corner = layout.place(*position, {size.x, size.y}, kGap)) {
         ImDrawList* const list = ImGui::GetBackgroundDrawList();
         // Dark behind bright, so that it can be read before anything.
         list->AddText({corner->x + 1, corner->y + 1}, IM_COL32(0, 0, 0, 200), label.c_str());

@@ -3,12 +3,16 @@
 #include "ecs/base/math.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace limn {
 
 class LabelLayout;
 struct RenderView;
+
+/// Pixel of a point of the world; none behind the near plane.
+[[nodiscard]] std::optional<Vec2> find_pixel(const RenderView& view, const Vec3& at);
 
 /// Draws lines and points of the world behind the HUD's panels, clipped at the near plane, without
 /// depth test.
