@@ -58,11 +58,12 @@ bool step_aim(const Vec3& facing, float dt, HeroState& hero, MoveIntent& intent)
     return true;
 }
 
-/// The loose body to pick up: the nearest ahead of the character; null if none is in reach.
+/// The loose body to pick up: the nearest in reach, with the cosine of the direction to it from
+/// that ahead above `cosine`; null: none.
 template <typename Bodies>
 Entity find_loose(
-    const Bodies& bodies, const Hero& hero, const CharacterMotor& motor,
-    const Transform& transform) {
+    const Bodies& bodies, const Hero& hero, const CharacterMotor& motor, const Transform& transform,
+    float cosine) {
     Entity nearest{};
     float least = std::numeric_limits<float>::infinity();
     const Vec3 ahead = transform.rotation * Vec3(0, 0, 1);
@@ -72,7 +73,7 @@ Entity find_loose(
             const bool in_height = to.y > -body.radius && to.y < motor.height;
             to.y = 0;
             const float distance = glm::length(to) - motor.radius - body.radius;
-            const bool is_ahead = glm::dot(normalize_or(to, ahead), ahead) > kAheadCosine;
+            const bool is_ahead = glm::dot(normalize_or(to, ahead), ahead) > cosine;
             if (in_height && is_ahead && state.carrier.is_null() && distance <= hero.reach
                 && body.mass <= kHeaviest * motor.push && distance < least) {
                 least = distance;
@@ -113,12 +114,21 @@ void update_heroes(
         intent.jump = !swims && (intent.jump || is_pressed(*input, "hero_jump"));
         LooseState* const carried = bodies.find<LooseState>(hero.carried);
         if (carried == nullptr || carried->carrier != entity) {
-            moves.aim = Vec3(0);
-            hero.carried = is_pressed(*input, "hero_carry")
-                               ? find_loose(bodies, hero, motor, transform)
-                               : Entity{};
+            hero.carried = {};
+            const bool turned = moves.aim != Vec3(0) && step_aim(facing, time->step, moves, intent);
+            if (turned || is_pressed(*input, "hero_carry")) {
+                moves.aim = Vec3(0);
+                hero.carried = find_loose(bodies, hero, motor, transform, kAheadCosine);
+            }
             if (LooseState* const found = bodies.find<LooseState>(hero.carried)) {
                 found->carrier = entity;
+            } else if (is_pressed(*input, "hero_carry")) {
+                // What is beside or behind: turns to it first.
+                const auto* const at =
+                    bodies.find<const Transform>(find_loose(bodies, hero, motor, transform, -2));
+                moves.aim = at != nullptr ? level_unit(at->position - transform.position, Vec3(0))
+                                          : Vec3(0);
+                moves.aiming = 0;
             }
             return;
         }

@@ -19,7 +19,8 @@ void add_hero_states(Query<const Hero, Without<HeroState>> bare, Commands comman
 
 /// What the player wants, in the directions of the camera: actions hero_forward, hero_back,
 /// hero_left, hero_right, hero_run, hero_jump (swims up), hero_dive, hero_carry (picks up the
-/// nearest loose body ahead, or turns to where the camera looks and throws it there).
+/// nearest loose body, to which it turns first, or turns to where the camera looks and throws it
+/// there).
 void update_heroes(
     Query<Hero, HeroState, const CharacterMotor, const MotorState, MoveIntent, const Transform>
         heroes,

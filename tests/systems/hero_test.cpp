@@ -150,6 +150,25 @@ TEST_CASE("hero: turns, and throws where the camera looks") {
     CHECK(double(rises[1] - rises[0]) == near(0.5).epsilon(0.05));  // as the view
 }
 
+TEST_CASE("hero: turns to what is behind, and picks it up") {
+    HeroStage stage;
+    const Entity ball = stage.add_ball({0.2f, 0.2f, -0.8f});
+    stage.press("hero_carry");
+    CHECK(stage.world.get<const Hero>(stage.person).carried.is_null());
+    stage.step(60);
+    CHECK(stage.world.get<const Hero>(stage.person).carried == ball);
+    CHECK(stage.ahead().z < -0.9f);
+    // Nothing in reach: it stays as it is.
+    stage.press("hero_carry");
+    stage.step(120);
+    const Vec3 before = stage.ahead();
+    REQUIRE(glm::distance(stage.at(ball), stage.feet()) > 2);
+    stage.press("hero_carry");
+    stage.step(60);
+    CHECK(stage.world.get<const Hero>(stage.person).carried.is_null());
+    CHECK(glm::distance(stage.ahead(), before) < 1e-4f);
+}
+
 TEST_CASE("hero: is back where it stood when it has fallen off the world") {
     HeroStage stage({make_box_mesh({-2, 4, -2}, {2, 5, 2})});
     std::vector<Entity> planes;
