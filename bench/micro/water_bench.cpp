@@ -111,7 +111,9 @@ void foam(benchmark::State& state) {
     synthesize_waves(cascade, 1.0f, 1.0);
     std::vector<float> coverage(cascade.height.size());
     for (auto _ : state) {
-        kernel(cascade, 0.75f, 0.1f, 0.99f, coverage, 0, coverage.size());
+        kernel(
+            {cascade.shift_xx, cascade.shift_zz, cascade.shift_xz}, 0.75f, 0.1f, 0.99f, coverage, 0,
+            coverage.size());
         benchmark::ClobberMemory();
     }
     per_point(state, coverage.size());

@@ -129,13 +129,15 @@ struct OceanState {
     std::vector<OceanCascade> cascades;
 };
 
-/// Foam of breaking waves, stored at rest positions rather than displaced ones.
+/// Foam of breaking waves, stored at rest positions rather than displaced ones. The sum of all
+/// waves breaks, as it is in the copy of the largest patch about the origin; other copies repeat
+/// it.
 struct OceanFoam {
-    std::vector<float> coverage;  ///< 0 .. 1; cascade c starts at c * size * size
+    std::vector<float> coverage;  ///< 0 .. 1, at the points of the first cascade
 };
 
 LIMN_FIELDS(OceanFoam) {
-    LIMN_FIELD(coverage, "foam coverage of each grid point of each cascade");
+    LIMN_FIELD(coverage, "foam coverage of each grid point of the first cascade");
 }
 
 template <>

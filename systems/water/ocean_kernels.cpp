@@ -114,15 +114,15 @@ void evolve(
 
 template <typename D>
 std::size_t foam(
-    D d, const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    D d, const ShiftDerivatives& shift, float threshold, float gain, float fade, float* coverage,
     std::size_t begin, std::size_t end) {
     using V = hn::Vec<D>;
     const V one = hn::Set(d, 1.0f);
     std::size_t i = begin;
     for (; i + hn::Lanes(d) <= end; i += hn::Lanes(d)) {
-        const V xx = hn::Add(one, hn::LoadU(d, &cascade.shift_xx[i]));
-        const V zz = hn::Add(one, hn::LoadU(d, &cascade.shift_zz[i]));
-        const V xz = hn::LoadU(d, &cascade.shift_xz[i]);
+        const V xx = hn::Add(one, hn::LoadU(d, &shift.xx[i]));
+        const V zz = hn::Add(one, hn::LoadU(d, &shift.zz[i]));
+        const V xz = hn::LoadU(d, &shift.xz[i]);
         const V left = hn::Sub(hn::Mul(xx, zz), hn::Mul(xz, xz));
         const V growth =
             hn::Mul(hn::Set(d, gain), hn::Max(hn::Sub(hn::Set(d, threshold), left), hn::Zero(d)));
@@ -148,15 +148,15 @@ void evolve_one_lane(
 }
 
 std::size_t foam_vector(
-    const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    const ShiftDerivatives& shift, float threshold, float gain, float fade, float* coverage,
     std::size_t begin, std::size_t end) {
-    return foam(hn::ScalableTag<float>(), cascade, threshold, gain, fade, coverage, begin, end);
+    return foam(hn::ScalableTag<float>(), shift, threshold, gain, fade, coverage, begin, end);
 }
 
 std::size_t foam_one_lane(
-    const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    const ShiftDerivatives& shift, float threshold, float gain, float fade, float* coverage,
     std::size_t begin, std::size_t end) {
-    return foam(hn::FixedTag<float, 1>(), cascade, threshold, gain, fade, coverage, begin, end);
+    return foam(hn::FixedTag<float, 1>(), shift, threshold, gain, fade, coverage, begin, end);
 }
 
 }  // namespace
@@ -196,20 +196,24 @@ void evolve_waves_scalar(
 }
 
 void step_foam(
-    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
-    std::size_t begin, std::size_t end) {
-    LIMN_CHECK(end <= coverage.size() && end <= cascade.shift_xx.size());
+    const ShiftDerivatives& shift, float threshold, float gain, float fade,
+    std::span<float> coverage, std::size_t begin, std::size_t end) {
+    LIMN_CHECK(
+        end <= coverage.size() && end <= shift.xx.size() && end <= shift.zz.size()
+        && end <= shift.xz.size());
     const std::size_t done = HWY_DYNAMIC_DISPATCH(foam_vector)(
-        cascade, threshold, gain, fade, coverage.data(), begin, end);
-    step_foam_scalar(cascade, threshold, gain, fade, coverage, done, end);
+        shift, threshold, gain, fade, coverage.data(), begin, end);
+    step_foam_scalar(shift, threshold, gain, fade, coverage, done, end);
 }
 
 void step_foam_scalar(
-    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
-    std::size_t begin, std::size_t end) {
-    LIMN_CHECK(end <= coverage.size() && end <= cascade.shift_xx.size());
+    const ShiftDerivatives& shift, float threshold, float gain, float fade,
+    std::span<float> coverage, std::size_t begin, std::size_t end) {
+    LIMN_CHECK(
+        end <= coverage.size() && end <= shift.xx.size() && end <= shift.zz.size()
+        && end <= shift.xz.size());
     HWY_STATIC_DISPATCH(foam_one_lane)
-    (cascade, threshold, gain, fade, coverage.data(), begin, end);
+    (shift, threshold, gain, fade, coverage.data(), begin, end);
 }
 
 }  // namespace limn

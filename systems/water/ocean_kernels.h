@@ -31,15 +31,22 @@ void evolve_waves_scalar(
     const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs);
 
+/// Derivatives of the horizontal displacement, a value a point.
+struct ShiftDerivatives {
+    std::span<const float> xx;
+    std::span<const float> zz;
+    std::span<const float> xz;
+};
+
 /// Foam of the points begin .. end: d coverage / dt = growth (1 - coverage) - coverage / decay,
 /// with growth = rate * max(threshold - J, 0), where J is the Jacobian determinant of the
-/// horizontal displacement. `gain` is rate * dt, `fade` is e^(-dt / decay). Implicit in the growth:
-/// coverage stays within 0 .. 1 for any dt.
+/// horizontal displacement `shift`. `gain` is rate * dt, `fade` is e^(-dt / decay). Implicit in the
+/// growth: coverage stays within 0 .. 1 for any dt.
 void step_foam(
-    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
-    std::size_t begin, std::size_t end);
+    const ShiftDerivatives& shift, float threshold, float gain, float fade,
+    std::span<float> coverage, std::size_t begin, std::size_t end);
 void step_foam_scalar(
-    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
-    std::size_t begin, std::size_t end);
+    const ShiftDerivatives& shift, float threshold, float gain, float fade,
+    std::span<float> coverage, std::size_t begin, std::size_t end);
 
 }  // namespace limn

@@ -7,6 +7,7 @@
 #include "systems/water/ocean_cascades.h"
 #include "systems/water/ocean_kernels.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -54,6 +55,40 @@ std::array<PairPlanes, kOceanPairs> planes_of(OceanCascade& cascade) {
         {&cascade.shift_zz, &cascade.slope_z},
         {&cascade.shift_xz, &cascade.shift_z},
     }};
+}
+
+/// Sums the derivatives of all waves that break along a row of the largest patch, the copy about
+/// the origin. Those of smaller patches, whose points are closer, are of the nearest point.
+void sum_derivatives(
+    const OceanState& state, std::size_t row, std::span<float> xx, std::span<float> zz,
+    std::span<float> xz) {
+    const OceanCascade& largest = state.cascades.front();
+    const int size = largest.size;
+    const std::size_t first = row * xx.size();
+    std::copy_n(largest.shift_xx.begin() + static_cast<std::ptrdiff_t>(first), size, xx.begin());
+    std::copy_n(largest.shift_zz.begin() + static_cast<std::ptrdiff_t>(first), size, zz.begin());
+    std::copy_n(largest.shift_xz.begin() + static_cast<std::ptrdiff_t>(first), size, xz.begin());
+    const auto centered = [half = size / 2, size](int i) { return i < half ? i : i - size; };
+    for (std::size_t c = 1; c < state.cascades.size(); ++c) {
+        const OceanCascade& cascade = state.cascades[c];
+        if (cascade.band_low * kMinBreakerLength >= 2 * kPi) {
+            break;
+        }
+        // The nearest point of a periodic patch; sizes are powers of two.
+        const float points = largest.patch / static_cast<float>(size)
+                             * static_cast<float>(cascade.size) / cascade.patch;
+        const auto nearest = [&](int i) {
+            const float at = static_cast<float>(centered(i)) * points;
+            return static_cast<int>(std::floor(at + 0.5f)) & (cascade.size - 1);
+        };
+        const int line = nearest(static_cast<int>(row)) * cascade.size;
+        for (int i = 0; i < size; ++i) {
+            const auto at = static_cast<std::size_t>(line + nearest(i));
+            xx[static_cast<std::size_t>(i)] += cascade.shift_xx[at];
+            zz[static_cast<std::size_t>(i)] += cascade.shift_zz[at];
+            xz[static_cast<std::size_t>(i)] += cascade.shift_xz[at];
+        }
+    }
 }
 
 }  // namespace
@@ -142,27 +177,31 @@ void synthesize_waves(OceanCascade& cascade, float choppiness, double time) {
 }
 
 void step_ocean_foam(const Ocean& ocean, const OceanState& state, float step, OceanFoam& foam) {
-    std::size_t points = 0;
-    for (const OceanCascade& cascade : state.cascades) {
-        points += cascade.height.size();
+    if (state.cascades.empty()) {
+        foam.coverage.clear();
+        return;
     }
-    if (foam.coverage.size() != points) {
-        foam.coverage.assign(points, 0.0f);
+    const OceanCascade& largest = state.cascades.front();
+    const std::size_t size = static_cast<std::size_t>(largest.size);
+    if (foam.coverage.size() != size * size) {
+        foam.coverage.assign(size * size, 0.0f);
     }
     const Ocean limited = clamp_ocean(ocean);
-    const float gain = limited.foam_rate * step;
+    const bool breaks = largest.band_low * kMinBreakerLength < 2 * kPi;
+    const float gain = breaks ? limited.foam_rate * step : 0.0f;
     const float fade = std::exp(-step / limited.foam_decay);
-    std::size_t first = 0;
-    for (const OceanCascade& cascade : state.cascades) {
-        const std::size_t count = cascade.height.size();
-        const std::span<float> coverage = std::span(foam.coverage).subspan(first, count);
-        const bool breaks = cascade.band_low * kMinBreakerLength < 2 * kPi;
-        const float added = breaks ? gain : 0.0f;
-        parallel_for(count, kFoamGrain, [&](std::size_t begin, std::size_t end) {
-            step_foam(cascade, limited.foam_threshold, added, fade, coverage, begin, end);
-        });
-        first += count;
-    }
+    parallel_for(size, std::max(kFoamGrain / size, std::size_t{1}), [&](auto begin, auto end) {
+        thread_local std::vector<float> memory;
+        memory.resize(3 * size);
+        const std::span<float> xx = std::span(memory).first(size);
+        const std::span<float> zz = std::span(memory).subspan(size, size);
+        const std::span<float> xz = std::span(memory).subspan(2 * size, size);
+        for (std::size_t row = begin; row < end; ++row) {
+            sum_derivatives(state, row, xx, zz, xz);
+            const std::span<float> coverage = std::span(foam.coverage).subspan(row * size, size);
+            step_foam({xx, zz, xz}, limited.foam_threshold, gain, fade, coverage, 0, size);
+        }
+    });
 }
 
 }  // namespace limn

@@ -17,8 +17,8 @@ namespace limn {
 //
 // omega follows from k and the depth (water_dispersion.h). Waves neither interact nor break, and
 // are not refracted by a shore. The shift is that of deep water; in shallow water, horizontal
-// motion would be larger. The fields are a function of Ocean and time; only foam has state, and
-// each cascade's foam depends only on that cascade's waves.
+// motion would be larger. The fields are a function of Ocean and time; only foam has state: the sum
+// of all waves breaks, as it is about the origin.
 
 /// Adds OceanState and OceanFoam to each Ocean that lacks them.
 void add_ocean_states(

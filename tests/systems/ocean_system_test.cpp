@@ -408,8 +408,9 @@ TEST_CASE("ocean: SIMD of any width is bit-identical to one lane") {
         }
         std::vector<float> foam(32 * 32, 0.25f);
         std::vector<float> foam_narrow = foam;
-        step_foam(cascade, 0.95f, 0.3f, 0.9f, foam, 3, 1001);
-        step_foam_scalar(cascade, 0.95f, 0.3f, 0.9f, foam_narrow, 3, 1001);
+        const ShiftDerivatives shift = {cascade.shift_xx, cascade.shift_zz, cascade.shift_xz};
+        step_foam(shift, 0.95f, 0.3f, 0.9f, foam, 3, 1001);
+        step_foam_scalar(shift, 0.95f, 0.3f, 0.9f, foam_narrow, 3, 1001);
         CHECK(foam == foam_narrow);
         CHECK(foam[2] == 0.25f);
         CHECK(foam[1001] == 0.25f);
@@ -478,22 +479,92 @@ TEST_CASE("ocean: foam grows with the compression given by the Jacobian of the s
     ocean.choppiness = 2;
     ocean.foam_threshold = 0.9f;
     const OceanState state = ocean_at_time(ocean, 3.0);
-    const OceanCascade& cascade = state.cascades[0];
     OceanFoam foam;
-    foam.coverage.assign(3 * 32 * 32, 0.3f);
+    foam.coverage.assign(32 * 32, 0.3f);
     step_ocean_foam(ocean, state, 0.02f, foam);
+    const double spacing = static_cast<double>(state.cascades[0].patch) / 32;
     double growing = 0;
-    for (std::size_t i = 0; i < 32 * 32; ++i) {
-        const double xx = cascade.shift_xx[i];
-        const double zz = cascade.shift_zz[i];
-        const double xz = cascade.shift_xz[i];
-        const double left = (1 + xx) * (1 + zz) - xz * xz;
-        const double growth = 60 * 0.02 * std::max(0.9 - left, 0.0);
-        const double expected = (0.3 + growth) / (1 + growth) * std::exp(-0.02 / 4);
-        CHECK(std::abs(foam.coverage[i] - expected) < 1e-6);
-        growing += left < 0.9 && std::abs(xz) > 0.05 ? 1 : 0;
+    for (int j = 0; j < 32; ++j) {
+        for (int i = 0; i < 32; ++i) {
+            // In the copy of the patch about the origin, by the nearest point of the smaller ones.
+            const double x = spacing * (i < 16 ? i : i - 32);
+            const double z = spacing * (j < 16 ? j : j - 32);
+            double xx = 0;
+            double zz = 0;
+            double xz = 0;
+            for (const OceanCascade& cascade : state.cascades) {
+                if (cascade.band_low > kPi) {
+                    continue;  // shorter than two meters
+                }
+                const double points = 32 / static_cast<double>(cascade.patch);
+                const int n = (static_cast<int>(std::lround(x * points)) + 3200) % 32;
+                const int m = (static_cast<int>(std::lround(z * points)) + 3200) % 32;
+                xx += static_cast<double>(cascade.shift_xx[m * 32 + n]);
+                zz += static_cast<double>(cascade.shift_zz[m * 32 + n]);
+                xz += static_cast<double>(cascade.shift_xz[m * 32 + n]);
+            }
+            const double left = (1 + xx) * (1 + zz) - xz * xz;
+            const double growth = 60 * 0.02 * std::max(0.9 - left, 0.0);
+            const double expected = (0.3 + growth) / (1 + growth) * std::exp(-0.02 / 4);
+            CHECK(std::abs(foam.coverage[j * 32 + i] - expected) < 1e-6);
+            growing += left < 0.9 && std::abs(xz) > 0.05 ? 1 : 0;
+        }
     }
     CHECK(growing > 20);
+}
+
+TEST_CASE("ocean: waves of all lengths break together, on the crests of the long ones") {
+    // Neither of the waves is steep enough to break, nor are short ones where the long one
+    // stretches the surface.
+    OceanCascade swell = lone_wave(64, 64, 2, 0, 1000, 0.45f);
+    OceanCascade chop = lone_wave(64, 16, 4, 0, 1000, 0.06f);
+    synthesize_waves(swell, 1.0f, 0.0);
+    synthesize_waves(chop, 1.0f, 0.0);
+    OceanState state;
+    const Ocean ocean = {.foam_threshold = 0.75f};
+    for (const OceanCascade& alone : {swell, chop}) {
+        state.cascades = {alone};
+        OceanFoam foam;
+        step_ocean_foam(ocean, state, kStep, foam);
+        CHECK(largest(foam.coverage) == 0);
+    }
+    state.cascades = {swell, chop};
+    OceanFoam foam;
+    step_ocean_foam(ocean, state, kStep, foam);
+    int white = 0;
+    for (std::size_t i = 0; i < foam.coverage.size(); ++i) {
+        if (foam.coverage[i] > 0) {
+            CHECK(swell.height[i] > 0.3f * largest(swell.height));
+            ++white;
+        }
+    }
+    CHECK(white > 0);
+}
+
+TEST_CASE("ocean: whitecaps cover about as much of the sea as is measured, more in stronger wind") {
+    // Monahan and O'Muircheartaigh 1980, with a scatter of a factor of three.
+    const auto measured = [](double wind) { return 3.84e-6 * std::pow(wind, 3.41); };
+    for (const float wind : {10.0f, 15.0f, 20.0f}) {
+        CAPTURE(wind);
+        const Ocean sea = {
+            .spectrum = OceanSpectrum::Jonswap,
+            .wind_speed = wind,
+            .resolution = 128,
+            .foam_threshold = 0.7f};
+        OceanState state;
+        OceanFoam foam;
+        for (int i = 0; i < 40; ++i) {
+            step_ocean(sea, 0.25 * i, 0.25f, state);
+            step_ocean_foam(sea, state, 0.25f, foam);
+        }
+        double white = 0;
+        for (const float cover : foam.coverage) {
+            const double thin = static_cast<double>(cover);
+            white += thin * (0.4 + 0.6 * thin) / (128 * 128);  // as it is drawn
+        }
+        CHECK(white < 3 * measured(static_cast<double>(wind)));
+        CHECK(white > measured(static_cast<double>(wind)) / 3);
+    }
 }
 
 TEST_CASE("ocean: waves shorter than two meters break without foam") {
