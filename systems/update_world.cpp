@@ -210,8 +210,8 @@ void add_water_systems(SystemList& systems) {
     systems.add<fill_wave_tables>(Waves, Both);  // after aging and wakes
     systems.add<update_oceans>(Waves, Both);
     systems.add<update_ocean_foam>(Waves);  // after oceans: where waves break now
-    systems.add<update_spray>(Force);
     systems.add<update_floating_bodies>(Float);
+    systems.add<update_spray>(Follow);  // on the bodies where they are now; before particles
     systems.add<update_water_ripples>(Follow);  // uses current positions of bodies
 }
 

@@ -363,6 +363,37 @@ TEST_CASE(
     CHECK(drops_with({500, 0, 0}) == alone);  // on land, where nothing surges
 }
 
+namespace {
+
+void move_obstacles(Query<const SprayObstacle, Transform> obstacles) {
+    obstacles.each([](const SprayObstacle&, Transform& pose) { pose.position.x += 3; });
+}
+
+void add_moving_obstacles(SystemList& systems) {
+    systems.add<move_obstacles>(Phase::Move);
+}
+
+}  // namespace
+
+TEST_CASE("water spray: drops leave a moving body where it is in this step") {
+    World world;
+    Schedule schedule = make_world_schedule(add_moving_obstacles);
+    world.create(Transform{}, Water{}, WaterWaves{.waves = {wave_of(0.15f)}});
+    const Entity wall =
+        world.create(Transform{}, SprayObstacle{.normal = {-1, 0, -1}, .rate = 6000});
+    start_world(world, add_moving_obstacles);
+    std::size_t thrown = 0;
+    for (int i = 0; i < 60; ++i) {
+        step_world(world, schedule);
+        const float x = world.get<Transform>(wall).position.x;
+        for (const SprayDrop& drop : world.get<SprayDrops>(wall).drops) {
+            CHECK(std::abs(drop.position.x - x) < 0.5f);
+            ++thrown;
+        }
+    }
+    CHECK(thrown > 100);
+}
+
 TEST_CASE("water spray: a world refills its drops each step" * technique("water.crest-spray")) {
     World world;
     Schedule schedule = make_world_schedule();
