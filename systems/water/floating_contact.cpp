@@ -168,11 +168,13 @@ struct Pair {
 };
 
 /// Of solids whose bounding balls overlap; sorts `solids` along x.
-std::vector<Pair> find_pairs(std::vector<Solid>& solids) {
-    std::stable_sort(solids.begin(), solids.end(), [](const Solid& a, const Solid& b) {
-        return a.shape.center.x - a.reach < b.shape.center.x - b.reach;
+void find_pairs(std::vector<Solid>& solids, std::vector<Pair>& pairs) {
+    std::sort(solids.begin(), solids.end(), [](const Solid& a, const Solid& b) {
+        const float left_a = a.shape.center.x - a.reach;
+        const float left_b = b.shape.center.x - b.reach;
+        return left_a != left_b ? left_a < left_b : a.body < b.body;
     });
-    std::vector<Pair> pairs;
+    pairs.clear();
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
         const Solid& a = solids[i];
         for (std::uint32_t k = i + 1; k < solids.size(); ++k) {
@@ -186,7 +188,6 @@ std::vector<Pair> find_pairs(std::vector<Solid>& solids) {
             }
         }
     }
-    return pairs;
 }
 
 /// Mass that an impulse along `direction` at arms `ra` and `rb` moves.
@@ -257,14 +258,15 @@ std::optional<BodyContact> find_contact(const ContactShape& a, const ContactShap
 }
 
 int separate_floating_bodies(std::span<const ContactBody> bodies) {
-    std::vector<Solid> solids;
-    solids.reserve(bodies.size());
+    thread_local std::vector<Solid> solids;  // scratch, kept for its memory
+    thread_local std::vector<Pair> pairs;
+    solids.clear();
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
         if (std::optional<Solid> solid = make_solid(bodies[i], i)) {
             solids.push_back(*solid);
         }
     }
-    const std::vector<Pair> pairs = find_pairs(solids);
+    find_pairs(solids, pairs);
     int contacts = 0;
     for (int round = 0; round < kContactRounds; ++round) {
         for (const Pair& pair : pairs) {
