@@ -1,5 +1,6 @@
 #include "content/load/level/particle_warnings.h"
 
+#include "ecs/archetype.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/height_image.h"
 #include "ecs/components/ocean.h"
@@ -23,6 +24,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -413,29 +416,60 @@ bool are_equal_fields(const FieldInfo& field, const void* a, const void* b) {
     return equal;
 }
 
-/// Whether a component of an entity has this field set to another value than its default; with an
-/// empty name, whether it exists.
-bool is_set(const World& world, Entity entity, std::string_view component, std::string_view name) {
-    const ComponentInfo* const info = find_component(component);
-    if (info == nullptr || !world.has(entity, info->id)) {
-        return false;
+/// A row of kIgnored with what it names.
+struct IgnoredField {
+    const Ignored* row = nullptr;
+    const ComponentInfo* component = nullptr;
+    const FieldInfo* field = nullptr;  ///< null: the component as a whole
+};
+
+std::vector<IgnoredField> find_ignored_fields() {
+    std::vector<IgnoredField> found;
+    for (const Ignored& row : kIgnored) {
+        const ComponentInfo* const info = find_component(row.component);
+        const FieldInfo* const field =
+            info != nullptr ? find_field(info->fields, row.field) : nullptr;
+        if (info != nullptr && (row.field.empty() || field != nullptr)) {
+            found.push_back({&row, info, field});
+        }
     }
-    if (name.empty()) {
-        return true;
+    return found;
+}
+
+/// Those of components that entities of `archetype` may have.
+std::vector<IgnoredField>
+fields_in(const Archetype& archetype, std::span<const IgnoredField> fields) {
+    const std::span<const ComponentId> has = archetype.components();
+    std::vector<IgnoredField> found;
+    for (const IgnoredField& one : fields) {
+        if (one.component->storage == Storage::Sparse
+            || std::binary_search(has.begin(), has.end(), one.component->id)) {
+            found.push_back(one);
+        }
     }
-    const void* const value = world.find(entity, info->id);
-    const FieldInfo* const field = find_field(info->fields, name);
-    return field != nullptr && value != nullptr && info->defaults != nullptr
+    return found;
+}
+
+/// Whether an entity has this field set to another value than its default; without a field, whether
+/// it has the component.
+bool is_set(const World& world, Entity entity, const IgnoredField& one) {
+    if (one.field == nullptr) {
+        return world.has(entity, one.component->id);
+    }
+    const void* const value = world.find(entity, one.component->id);
+    const void* const defaults = one.component->defaults;
+    return value != nullptr && defaults != nullptr
            && !are_equal_fields(
-               *field, field_ptr(value, *field), field_ptr(info->defaults, *field));
+               *one.field, field_ptr(value, *one.field), field_ptr(defaults, *one.field));
 }
 
 /// One line for each component or field, whatever the number of reasons.
-void check_ignored(const ParticleCheck& check, Entity entity) {
+void check_ignored(
+    const ParticleCheck& check, Entity entity, std::span<const IgnoredField> fields) {
     std::vector<std::string> told;
-    for (const Ignored& row : kIgnored) {
-        if (!is_set(check.world, entity, row.component, row.field)
-            || !row.applies(check.world, entity)) {
+    for (const IgnoredField& one : fields) {
+        const Ignored& row = *one.row;
+        if (!is_set(check.world, entity, one) || !row.applies(check.world, entity)) {
             continue;
         }
         const std::string whole(row.component);
@@ -446,6 +480,19 @@ void check_ignored(const ParticleCheck& check, Entity entity) {
             })) {
             check.warn(entity, fmt::format("{} has no effect {}", name, row.where));
             told.push_back(name);
+        }
+    }
+}
+
+/// By archetype: most entities have none of the components.
+void check_all_ignored(const ParticleCheck& check) {
+    const std::vector<IgnoredField> fields = find_ignored_fields();
+    for (const std::unique_ptr<Archetype>& archetype : check.world.archetypes()) {
+        const std::vector<IgnoredField> here = fields_in(*archetype, fields);
+        if (!here.empty()) {
+            for (const Entity entity : archetype->entities()) {
+                check_ignored(check, entity, here);
+            }
         }
     }
 }
@@ -499,7 +546,7 @@ void find_particle_warnings(const World& world, std::vector<SceneWarning>& warni
     check_sources(check);
     check_surfaces(check);
     check_flipbooks(check);
-    world.each_entity([&](Entity entity) { check_ignored(check, entity); });
+    check_all_ignored(check);
     check_gpu_particles(check);
     check_colliders(check);
     check_point_masses(check);
