@@ -39,6 +39,7 @@ struct FootContacts {
     std::array<Vec3, 2> points{};     ///< in the ground's space, so that it carries the foot
     std::array<float, 2> lifts{};     ///< above the level floor, in the character's space
     std::array<Vec3, 2> normals = {Vec3(0, 1, 0), Vec3(0, 1, 0)};
+    std::array<Vec3, 2> slopes = {Vec3(0, 1, 0), Vec3(0, 1, 0)};  ///< normals that grounds carry
     std::array<std::uint16_t, 2> feet = {0xffff, 0xffff};
 };
 
@@ -47,6 +48,7 @@ LIMN_FIELDS(FootContacts) {
     LIMN_FIELD(points, "where they stand, in the grounds' spaces", "m");
     LIMN_FIELD(lifts, "height above the level floor, in the character's space", "m");
     LIMN_FIELD(normals, "of the ground, in the character's space");
+    LIMN_FIELD(slopes, "the same in the grounds' spaces");
     LIMN_FIELD(feet, "indices of the joints");
 }
 

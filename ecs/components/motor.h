@@ -74,6 +74,9 @@ struct MotorState {
     Quat ground_rotation = Quat(1, 0, 0, 0);
     GroundRide ride{};
     Vec3 drift = Vec3(0);
+    Vec3 place = Vec3(0);
+    std::uint32_t arrived = 0;
+    std::uint32_t held = 0;
     float depth = -1.0f;
     float air_time = 0.0f;
     float gather = 0.0f;
@@ -90,7 +93,13 @@ LIMN_FIELDS(MotorState) {
     LIMN_FIELD(ground_rotation, "of that entity, in the world");
     LIMN_FIELD(ride, "how that entity has moved it in the last step");
     LIMN_FIELD(
-        drift, "velocity of the ground that it stands on, or has left in a jump or a fall", "m/s");
+        drift, "velocity of what carries it, or of the ground that it has left in a jump or a fall",
+        "m/s");
+    LIMN_FIELD(place, "where it was left in the world", "m");
+    LIMN_FIELD(
+        arrived, "1: has come to ground whose velocity is still in its own, from other ground", "",
+        0, 1);
+    LIMN_FIELD(held, "1: is attached to something that carries it", "", 0, 1);
     LIMN_FIELD(depth, "of the water above the soles; < 0: none", "m");
     LIMN_FIELD(air_time, "since it last stood", "s");
     LIMN_FIELD(gather, "since it crouches for a jump", "s");

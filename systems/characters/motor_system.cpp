@@ -105,14 +105,28 @@ Quat rotation_of(const PlacedGround& ground) {
     return decompose_affine(ground.world).rotation;
 }
 
+/// What it was attached to carries it for one more step.
+void let_go(float dt, MotorBody& body) {
+    body.transform.position += dt * body.state.drift;
+    body.state.ride.to = body.transform.position;
+    body.state.held = 0;
+}
+
 /// Carries the character with the ground on which it stands.
 void ride(std::span<const PlacedGround> grounds, float dt, MotorBody& body) {
     MotorState& state = body.state;
     Transform& at = body.transform;
     state.ride = {.from = at.position, .to = at.position};
+    if (state.held != 0) {
+        let_go(dt, body);
+        return;
+    }
     if (state.mode != MotorMode::Stand) {
         return;
     }
+    const bool has_arrived = state.arrived != 0;
+    state.velocity += has_arrived ? level_part(state.drift) : Vec3(0);
+    state.arrived = 0;
     state.drift = Vec3(0);
     const PlacedGround* const ground = find_placed(grounds, state.ground);
     if (ground == nullptr) {
@@ -123,10 +137,14 @@ void ride(std::span<const PlacedGround> grounds, float dt, MotorBody& body) {
     if (!is_finite(carried)) {
         return;
     }
-    at.position = state.ride.to = carried;
-    state.drift = dt > 0 ? (carried - state.ride.from) / dt : Vec3(0);
+    const Quat turn = normalize_or_identity(rotation * glm::conjugate(state.ground_rotation));
+    // One that something else has moved since then goes on from there.
+    at.position = carried + turn * (at.position - state.place);
+    state.ride.to = at.position;
+    state.drift = dt > 0 ? (at.position - state.ride.from) / dt : Vec3(0);
+    state.velocity -= has_arrived ? level_part(state.drift) : Vec3(0);
     if (rotation != state.ground_rotation) {
-        state.ride.turn = normalize_or_identity(rotation * glm::conjugate(state.ground_rotation));
+        state.ride.turn = turn;
         const Vec3 now = level_part(at.rotation * Vec3(0, 0, 1));
         const Vec3 ahead = level_part(state.ride.turn * now);
         state.ride.yaw =
@@ -140,6 +158,7 @@ void ride(std::span<const PlacedGround> grounds, float dt, MotorBody& body) {
 void leave_ground(MotorState& state) {
     state.velocity.y += state.drift.y;
     state.drift.y = 0;
+    state.arrived = 0;
     state.mode = MotorMode::Fall;
 }
 
@@ -340,8 +359,9 @@ void meet_ground(const Surroundings& around, float dt, MotorBody& body) {
                             * std::sqrt(std::max(1 - square(landing.normal.y), 0.0f))
                             / std::max(landing.normal.y, 0.1f);
     feet.y += std::abs(gap) <= slope_gap * 1.5f ? gap : ease * gap;
-    if (!stood && landing.ground->base != base_of(around.grounds(), state.ground)) {
-        forget_drift(state);
+    const bool is_new = landing.ground->base != base_of(around.grounds(), state.ground);
+    if (is_new && (!state.ground.is_null() || state.air_time > kCoyote)) {
+        state.arrived = 1;
     }
     state.velocity.y = 0;
     state.mode = MotorMode::Stand;
@@ -405,6 +425,7 @@ MotorBody step_motor(
     }
     feel_wall(around, intent, next);
     look_down(grounds, next);
+    next.state.place = next.transform.position;
     return next;
 }
 
@@ -415,16 +436,22 @@ void add_motor_states(
         children,
     Query<MotorState, With<CharacterMotor>, With<Parent>> held,
     Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
-    Query<const Parent> parents, Commands commands) {
+    Query<const Parent> parents, OptionalRes<const FrameTime> time, Commands commands) {
     const Placements placements(transforms, parents);
     children.each([&](Entity entity, const CharacterMotor&, const Transform&) {
         commands.set(entity, decompose_affine(placements.world(entity)));
         commands.remove<Parent>(entity);
     });
-    held.each([](MotorState& state) {
-        state.ground = {};
-        state.ride = {};
-        state.drift = Vec3(0);
+    const float step = time ? time->step : 0.0f;
+    held.each([&](Entity entity, MotorState& state) {
+        const Vec3 place = transform_point(placements.world(entity), Vec3(0));
+        const bool was_held = state.held != 0 && step > 0;
+        state = {
+            .drift = was_held ? (place - state.place) / step : Vec3(0),
+            .place = place,
+            .held = 1,
+            .air_time = was_held ? state.air_time + step : 0.0f,
+            .mode = MotorMode::Stand};
     });
     left.each([&](Entity entity, const MotorState&) { commands.remove<MotorState>(entity); });
     bare.each([&](Entity entity, const CharacterMotor&) { commands.add(entity, MotorState{}); });

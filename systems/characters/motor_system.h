@@ -40,8 +40,8 @@ struct MotorDrive {
     const std::optional<MotorDrive>& drive = {});
 
 /// `children`: are taken off their parents, where these have them now. `held`: became children
-/// later, or by Attach; they do not move by themselves until they are roots again, and forget the
-/// ground on which they stood.
+/// later, or by Attach; they do not move by themselves until they are roots again, and know nothing
+/// but how fast they are carried.
 void add_motor_states(
     Query<const CharacterMotor, Without<MotorState>> bare,
     Query<const CharacterMotor, Without<MoveIntent>> aimless,
@@ -49,7 +49,7 @@ void add_motor_states(
         children,
     Query<MotorState, With<CharacterMotor>, With<Parent>> held,
     Query<const MotorState, Without<CharacterMotor>> left, Query<const Transform> transforms,
-    Query<const Parent> parents, Commands commands);
+    Query<const Parent> parents, OptionalRes<const FrameTime> time, Commands commands);
 
 /// After everything that moves grounds.
 void update_motors(

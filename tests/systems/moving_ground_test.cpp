@@ -259,9 +259,11 @@ TEST_CASE("moving ground: a child of a deck begins where the deck has it, and wa
     stage.sail(60);
     CHECK(stage.world.get<const Transform>(child).position == Vec3(1, 0, 1));
     REQUIRE(detach(stage.world, child));
-    const Vec3 seat = stage.world.get<const Transform>(child).position;
     stage.sail();
-    CHECK(glm::distance(stage.world.get<const Transform>(child).position, seat) < 0.05f);
+    CHECK(
+        glm::distance(
+            stage.on_deck(stage.world.get<const Transform>(child).position), Vec3(1, 0, 1))
+        < 0.01f);
     stage.sail(29);
     CHECK(
         glm::distance(
@@ -284,6 +286,82 @@ TEST_CASE("moving ground: one that is attached from the start stays so until it 
     CHECK(std::abs(at.y) < 1e-3f);
     CHECK(glm::length(at) > 0.6f);
     CHECK(glm::length(at) < 1.1f);
+}
+
+TEST_CASE(
+    "moving ground: one who comes from one deck to another keeps its velocity until it brakes") {
+    for (const float height : {9.5f, 10.0f}) {     // falls on it, or steps over
+        for (const float speed : {-3.0f, 0.0f}) {  // of the other deck
+            CAPTURE(height);
+            CAPTURE(speed);
+            DeckStage<MotorStage> stage({.speed = 4});
+            MeshData mesh = make_box_mesh({-80, -1, 40}, {80, 0, 120});
+            stage.world.resource<Assets>().meshes.push_back(std::move(mesh));
+            const Entity other = stage.world.create(
+                Transform{.position = {0, height, 0}}, MeshInstance{.mesh = {1}, .material = {}},
+                Walkable{});
+            stage.sea = {.speed = 4};
+            stage.world.get<Transform>(stage.person).position = {0, 10, 38};
+            stage.go({0, 0, 5});
+            std::array<float, 3> x{};
+            float change = 0;
+            for (int i = 0; i < 120; ++i) {
+                stage.world.get<Transform>(other).position = {
+                    speed * stage.time, height, 0.5f * 4 * stage.time};
+                stage.sail();
+                std::rotate(x.begin(), x.begin() + 2, x.end());
+                x[0] = stage.feet().x;
+                const float second = std::abs(x[0] - 2 * x[1] + x[2]) / (kFrame * kFrame);
+                change = std::max(change, i > 3 ? second : 0.0f);
+            }
+            CHECK(stage.state().ground == other);
+            CHECK(change < 1.01f * CharacterMotor{}.acceleration + 0.2f);
+            CHECK(change > 0.5f * CharacterMotor{}.acceleration);
+            CHECK(double((x[0] - x[1]) / kFrame) == near(double(speed)).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE("moving ground: one that is attached and let go between two steps stays where it is") {
+    DeckStage<MotorStage> stage(kFerry);
+    stage.sail(60);
+    REQUIRE(attach(stage.world, stage.deck, stage.person, Transform{.position = {5, 0, 5}}));
+    REQUIRE(detach(stage.world, stage.person));
+    stage.sail();
+    CHECK(glm::distance(stage.on_deck(stage.feet()), Vec3(5, 0, 5)) < 0.01f);
+    stage.sail(60);
+    CHECK(glm::distance(stage.on_deck(stage.feet()), Vec3(5, 0, 5)) < 0.02f);
+}
+
+TEST_CASE(
+    "moving ground: one that is attached forgets its velocity, and goes on at the carrier's") {
+    MotorStage stage({}, {}, {});
+    const Entity bird = stage.world.create(Transform{.position = {0, 20, 0}});
+    float time = 0;
+    const auto fly = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            time += kFrame;
+            stage.world.get<Transform>(bird).position = {3 * time, 20 + time, 0};
+            stage.step();
+        }
+    };
+    stage.go({0, 0, 4});
+    fly(60);
+    CHECK(stage.state().velocity.z > 3.9f);
+    REQUIRE(attach(stage.world, bird, stage.person, Transform{.position = {0, -2, 0}}));
+    fly(30);
+    CHECK(stage.state().held == 1);
+    CHECK(stage.state().velocity == Vec3(0));
+    stage.go(Vec3(0));
+    REQUIRE(detach(stage.world, stage.person));
+    const Vec3 begin = stage.feet();
+    fly(30);
+    const Vec3 way = stage.feet() - begin;
+    const auto gravity = static_cast<float>(kGravity);
+    CHECK(std::abs(way.x - 1.5f) < 0.01f);
+    CHECK(std::abs(way.y - 0.5f + 0.125f * gravity) < 0.1f);
+    CHECK(std::abs(way.z) < 1e-4f);
+    CHECK(stage.state().mode == MotorMode::Fall);
 }
 
 TEST_CASE("moving ground: one who jumps against a wall of the deck is not thrown back") {

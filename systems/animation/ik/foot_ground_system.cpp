@@ -41,10 +41,15 @@ void update_foot(
     const Segment segment = {on_floor(plant.step), on_floor(-plant.step)};
     const Landing landing = stands ? find_landing(grounds, segment) : Landing{};
     const PlacedGround* const last = find_placed(grounds, contacts.grounds[i]);
-    // Height of the contact as its ground has carried it.
+    // Height and slope of the contact as its ground has carried it.
     const float carried =
         last != nullptr ? transform_point(local, transform_point(last->world, contacts.points[i])).y
                         : contacts.lifts[i];
+    const Vec3 slope =
+        last != nullptr ? normalize_or(
+            transform_vector(local, transform_vector(last->world, contacts.slopes[i])),
+            Vec3(0, 1, 0))
+                        : contacts.normals[i];
     const float wanted = landing.ground != nullptr ? transform_point(local, landing.point).y : 0.0f;
     const float share = plant.speed > 0 ? 1 - std::exp(-plant.speed * step) : 1.0f;
     const bool is_first = contacts.feet[i] == kNoFoot;
@@ -55,10 +60,13 @@ void update_foot(
                             : Vec3(0, 1, 0);
     contacts.lifts[i] = lift;
     contacts.normals[i] =
-        normalize_or(glm::mix(contacts.normals[i], normal, is_first ? 1.0f : share), Vec3(0, 1, 0));
+        normalize_or(glm::mix(slope, normal, is_first ? 1.0f : share), Vec3(0, 1, 0));
     contacts.grounds[i] = landing.ground != nullptr ? landing.ground->entity : Entity{};
     if (landing.ground != nullptr) {
         contacts.points[i] = transform_point(landing.ground->local, on_floor(lift));
+        contacts.slopes[i] = normalize_or(
+            transform_vector(landing.ground->local, transform_vector(world, contacts.normals[i])),
+            Vec3(0, 1, 0));
     }
 }
 
