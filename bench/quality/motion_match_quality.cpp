@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -69,14 +70,15 @@ struct CourseErrors {
 /// One person on the course.
 class CourseTrial {
   public:
-    CourseTrial(float blend, float frame)
+    CourseTrial(float blend, float frame, const Vec3& start = Vec3(0))
         : frame_(frame), body_(find_walk_body(oracle::make_walker())) {
         Assets& assets = world_.insert_resource(Assets{});
         assets.skeletons.push_back(oracle::make_walker());
         world_.insert_resource(FrameTime{.step = frame});
         MotionMatch match;
         match.blend = blend;
-        person_ = world_.create(Transform{}, Skeleton{{0}}, match, MoveIntent{}, route_);
+        person_ =
+            world_.create(Transform{.position = start}, Skeleton{{0}}, match, MoveIntent{}, route_);
         start_world(world_);
     }
 
@@ -176,6 +178,18 @@ double wanted_distance() {
     return static_cast<double>(sum);
 }
 
+/// Of people who begin a little aside: each course is another one after a few steps [m].
+std::vector<double> course_distances() {
+    std::vector<double> distances;
+    for (const float aside : {-0.07f, 0.0f, 0.07f}) {
+        for (const float back : {0.0f, 0.11f, 0.22f, 0.33f}) {
+            CourseTrial trial(MotionMatch{}.blend, kFrame, {aside, 0, -back});
+            distances.push_back(trial.run().path);
+        }
+    }
+    return distances;
+}
+
 Status measure_motion_matching(HeadlessRenderer& /*headless*/, QualityReport& report) {
     const float blend = MotionMatch{}.blend;
     const CourseErrors played = CourseTrial(blend, kFrame).run();
@@ -188,7 +202,12 @@ Status measure_motion_matching(HeadlessRenderer& /*headless*/, QualityReport& re
     report.inform("jump of a joint without a change", blended.usual, "mm");
     const double wanted = wanted_distance();
     report.inform("mean distance from the course, as wanted", wanted, "m");
-    report.at_most("mean distance from it over that as wanted", played.path / wanted, 1.5);
+    const std::vector<double> distances = course_distances();
+    const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
+    const double mean = sum / static_cast<double>(distances.size());
+    const double most = *std::max_element(distances.begin(), distances.end());
+    report.at_most("mean distance from it over that as wanted, of 12 people", mean / wanted, 1.5);
+    report.inform("of the one who is the farthest off", most / wanted);
     return Done{};
 }
 

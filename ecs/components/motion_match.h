@@ -36,6 +36,7 @@ struct MotionMatch {
     float acceleration = 2.2f;
     float turn_speed = 2.2f;
     float steer = 0.8f;
+    float pace = 0.2f;
 };
 
 LIMN_FIELDS(MotionMatch) {
@@ -58,6 +59,8 @@ LIMN_FIELDS(MotionMatch) {
     LIMN_FIELD(turn_speed, "fastest turn that it wants", "rad/s", 0.05, 20);
     LIMN_FIELD(
         steer, "fastest turn added to that of the clips, toward the wanted path", "rad/s", 0, 10);
+    LIMN_FIELD(
+        pace, "share by which clips play faster or slower, to go as fast as is wanted", "", 0, 0.5);
 }
 
 /// What a foot shows, and what it is off the clip's foot. A planted foot only rolls over its
@@ -109,6 +112,8 @@ struct MotionMatchState {
     float drift_turn = 0.0f;
     float steering = 0.0f;
     float steer_aim = 0.0f;
+    float pace = 1.0f;
+    float pace_aim = 1.0f;
     Vec2 velocity = {0, 0};
     float turn = 0.0f;
     Vec3 root = {0, 0, 0};
@@ -134,6 +139,8 @@ LIMN_FIELDS(MotionMatchState) {
     LIMN_FIELD(drift_turn, "likewise", "rad/s");
     LIMN_FIELD(steering, "turn that is added to the clip's", "rad/s");
     LIMN_FIELD(steer_aim, "what it tends to", "rad/s");
+    LIMN_FIELD(pace, "at which the clip plays, 1: as it was recorded");
+    LIMN_FIELD(pace_aim, "what it tends to");
     LIMN_FIELD(velocity, "of the Transform, x and z", "m/s");
     LIMN_FIELD(turn, "likewise", "rad/s");
     LIMN_FIELD(root, "where the Transform was left", "m");

@@ -102,6 +102,46 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "motion match: between the speeds of the takes, clips play faster or slower"
+    * technique("char.motion-select")) {
+    std::array<float, 2> sums{};
+    for (const float speed : {2.4f, 3.3f, 3.6f}) {
+        CAPTURE(speed);
+        for (const float pace : {0.2f, 0.0f}) {
+            MotionMatch match;
+            match.pace = pace;
+            MatchStage stage(match);
+            stage.go({0, 0, speed});
+            stage.step(360);
+            const float begin = stage.at().position.z;
+            stage.step(120);
+            const float off = std::abs(0.5f * (stage.at().position.z - begin) - speed) / speed;
+            CHECK((off < 0.05f || pace == 0));
+            CHECK(std::abs(stage.state().pace - 1) <= pace);
+            sums[pace > 0 ? 0 : 1] += off;
+        }
+    }
+    CHECK(sums[0] < 0.7f * sums[1]);
+}
+
+TEST_CASE("motion match: no clip is left before it has played for a while, but by those who stop") {
+    MatchStage stage;
+    std::uint32_t before = 0;
+    int last = -100;
+    int shortest = 100;
+    run_tour(stage, [&](int frame) {
+        const bool goes = tour_velocity(static_cast<float>(frame) * kFrame) != Vec3(0);
+        if (stage.state().transitions != before) {
+            shortest = goes ? std::min(shortest, frame - last) : shortest;
+            before = stage.state().transitions;
+            last = frame;
+        }
+    });
+    CHECK(before > 20);
+    CHECK(shortest >= 12);
+}
+
+TEST_CASE(
     "motion match: planted feet do not slide, whatever clips change" * technique("char.blend")) {
     MatchStage stage;
     stage.step(2);

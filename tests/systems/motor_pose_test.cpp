@@ -480,6 +480,80 @@ TEST_CASE(
     }
 }
 
+namespace {
+
+struct RunUp {
+    int steps = 0;        ///< in the first 1.2 s
+    float longest = 0;    ///< distance of the ankles along the way [leg lengths]
+    float lowest = 1e6f;  ///< of the hips, of their height at rest
+    std::vector<float> lengths = {};
+};
+
+/// From one speed to another.
+template <typename Stage>
+RunUp watch_run_up(float from, float to) {
+    Stage stage;
+    stage.step(60);
+    const float leg = leg_length(stage.body());
+    const float rest = stage.hips_height();
+    stage.go({0, 0, from});
+    stage.step(from > 0 ? 180 : 1);
+    stage.go({0, 0, to});
+    RunUp found;
+    float before = 0;
+    bool grew = false;
+    for (int i = 0; i < 150; ++i) {
+        stage.step();
+        const WalkBody& body = stage.body();
+        const float apart =
+            std::abs(stage.joint(body.legs[0].foot).z - stage.joint(body.legs[1].foot).z) / leg;
+        const bool grows = apart > before;
+        if (grew && !grows && before > 0.2f) {  // a step is as long as ankles are apart at most
+            found.lengths.push_back(before);
+            found.steps += i < 72 ? 1 : 0;
+        }
+        grew = grows;
+        before = apart;
+        found.longest = std::max(found.longest, apart);
+        found.lowest = std::min(found.lowest, stage.hips_height() / rest);
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("run: it begins with short quick steps that get longer, and with the hips up") {
+    // Motion matching gains speed as slowly as the takes.
+    for (const bool matched : {false, true}) {
+        CAPTURE(matched);
+        const RunUp found =
+            matched ? watch_run_up<MatchedStage>(0, 4.2f) : watch_run_up<PoseStage>(0, 4.2f);
+        CHECK(found.steps >= (matched ? 2 : 3));
+        CHECK(found.longest < 1.2f);
+        CHECK(found.lowest > (matched ? 0.82f : 0.84f));
+        REQUIRE(found.lengths.size() >= 4);
+        CHECK(found.lengths[0] < 0.8f);
+        CHECK(found.lengths[0] < 0.85f * found.longest);
+        for (std::size_t i = 1; i < found.lengths.size(); ++i) {
+            CHECK(found.lengths[i] > 0.7f * found.lengths[i - 1]);
+        }
+    }
+}
+
+TEST_CASE("run: ankles are never far apart when it begins, from a stand and from a walk") {
+    for (const float from : {0.0f, 0.7f, 1.4f, 2.0f}) {
+        for (const float to : {2.6f, 3.4f, 4.2f, 5.0f}) {
+            CAPTURE(from);
+            CAPTURE(to);
+            for (const RunUp& found :
+                 {watch_run_up<PoseStage>(from, to), watch_run_up<MatchedStage>(from, to)}) {
+                CHECK(found.longest < 1.2f);
+                CHECK(found.lowest > 0.8f);
+            }
+        }
+    }
+}
+
 TEST_CASE(
     "matched hero: planted feet do not slide as it starts, turns, runs and stops"
     * technique("char.blend")) {

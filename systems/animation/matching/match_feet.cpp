@@ -24,11 +24,12 @@ constexpr float kKneeAhead = 0.6f;      // pull on knees, forward [leg lengths]
 constexpr float kHipsEase = 0.01f;      // over which hips begin to sink [leg lengths]
 constexpr std::uint32_t kPlanted = 1;   // of MatchFoot::planted
 constexpr std::uint32_t kPulledOff = 2;
-constexpr float kArc = 0.25f;          // height of a way over the ground [way]
-constexpr float kHighestArc = 0.12f;   // [leg lengths]
-constexpr float kDeepestSink = 0.07f;  // of the hips above a foot [leg lengths]
-constexpr float kMaxFootRate = 20.0f;  // of an offset [m/s]
-constexpr float kMaxFootSpin = 60.0f;  // [rad/s]
+constexpr float kArc = 0.25f;           // height of a way over the ground [way]
+constexpr float kHighestArc = 0.12f;    // [leg lengths]
+constexpr float kDeepestSink = 0.04f;   // of the hips above a foot [leg lengths]
+constexpr float kLandingSink = 0.004f;  // likewise, where a foot lands
+constexpr float kMaxFootRate = 20.0f;   // of an offset [m/s]
+constexpr float kMaxFootSpin = 60.0f;   // [rad/s]
 
 float yaw_of(const Quat& rotation) {
     return 2 * std::atan2(rotation.y, rotation.w);
@@ -94,12 +95,17 @@ float arc_share(const Vec3& left, const Vec3& whole) {
     return 16 * square(s * (1 - s));
 }
 
-/// Whether a planted foot is too far behind for its leg.
-bool is_stretched(const FootAim& aim, const Transform& at, float deepest, const MatchFoot& foot) {
+/// Whether a foot is too far off for its leg. The hips sink for one that stands; one that lands
+/// lets them sink by no more than the clip's own foot does.
+bool is_stretched(const FootAim& aim, const Transform& at, bool stands, const MatchFoot& foot) {
     const Quat back = glm::conjugate(at.rotation);
     const Vec3 ball = back * (foot.place - at.position) / uniform_scale(at);
     const Vec3 ankle = ball - back * (foot.rotation * aim.ball);
-    return needed_sink(aim.hip, ankle, aim.leg) > deepest * aim.leg;
+    const Vec3 own = aim.local.place - aim.local.rotation * aim.ball;
+    const float landing = std::clamp(
+        needed_sink(aim.hip, own, aim.leg) + 0.5f * kLandingSink * aim.leg, -kHipsEase * aim.leg,
+        kLandingSink * aim.leg);
+    return needed_sink(aim.hip, ankle, aim.leg) > (stands ? kDeepestSink * aim.leg : landing);
 }
 
 }  // namespace
@@ -172,8 +178,7 @@ void step_foot(
         foot.planted = 0;
     }
     // A foot lands where its leg reaches, so that the hips do not drop.
-    const float deepest = was_planted ? kDeepestSink : -kHipsEase;
-    const bool pulled = far > reach || is_stretched(aim, at, deepest, foot);
+    const bool pulled = far > reach || is_stretched(aim, at, was_planted, foot);
     now.contact = aim.contact && foot.planted != kPulledOff && !pulled;
     const auto show = [&] {
         FootPoint target = point_in(aim.local, at);
@@ -199,11 +204,10 @@ void step_foot(
         foot.rotation = rotation;
     };
     foot.clock = std::min(foot.clock + dt, 1e3f);
-    foot.hold = was_planted ? 1.0f : std::max(foot.hold - dt / kHoldTime, 0.0f);
+    foot.hold = std::clamp(foot.hold + (was_planted ? dt : -dt) / kHoldTime, 0.0f, 1.0f);
     show();
     if (was_planted != now.contact) {
         capture_foot(now, at, rate, foot);
-        foot.hold = 1;
         foot.planted = aim.contact && pulled ? kPulledOff : foot.planted;
     }
     foot.aim = aim_place;

@@ -30,6 +30,9 @@ constexpr float kSameFrame = 0.25f;              // ahead: nearer ones are no re
 constexpr float kRecent = 1.0f;                  // in which a clip is not played again [s]
 constexpr float kGoodEnough = 0.02f;             // squared distance that needs no better frame
 constexpr float kClipLeft = 0.07f;               // of a clip that is over [s]
+constexpr float kShortestPlay = 0.25f;           // of a clip, before another one is better [s]
+constexpr float kRootBlend = 0.3f;               // of a blend, in which the root follows the clip
+constexpr float kAnyWay = 0.05f;                 // slower ones stop [m/s]
 constexpr float kSteerResponse = 0.15f;          // [s]
 constexpr float kSteerSpeed = 0.4f;              // above it, a character can be steered [m/s]
 constexpr float kContactGap = 0.05f;             // in which a foot is not lifted [s]
@@ -69,6 +72,16 @@ bool is_over(const MatchContext& context, const MotionMatchState& state) {
     return state.time > playing(context, state).duration - kClipLeft;
 }
 
+/// Whether it has just begun. Beginnings of turns that were played again and again would not turn.
+bool has_just_begun(const MotionMatchState& state) {
+    return state.blending != 0 && state.clock < kShortestPlay - kSearchEarly;
+}
+
+/// For how long the root keeps its velocity [s].
+float root_blend(const MatchContext& context) {
+    return kRootBlend * context.match.blend;
+}
+
 /// How fast a clip moves its root: way per time in the space of the root, and turn [m/s], [rad/s].
 GroundMove root_rate(const MatchClip& clip, float time) {
     const float from = std::clamp(time, 0.0f, std::max(clip.duration - kMatchStep, 0.0f));
@@ -83,12 +96,12 @@ bool touches(const MatchClip& clip, std::size_t foot, float time) {
     });
 }
 
-/// The clip's pose, and what it is `earlier` [s] before.
+/// The clip's pose, or what it was `earlier` [s] before.
 void sample_clip_pose(
     const MatchContext& context, const MotionMatchState& state, float earlier, LocalPose& pose) {
     pose = context.skeleton.rest;
-    sample_match_pose(
-        context.database, context.assets, {state.clip, std::max(state.time - earlier, 0.0f)}, pose);
+    const float time = std::max(state.time - state.pace * earlier, 0.0f);
+    sample_match_pose(context.database, context.assets, {state.clip, time}, pose);
 }
 
 void apply_offsets(
@@ -146,7 +159,8 @@ FootRate aim_rate(
     const GroundMove back = inverse(root_of(clip, state.time));
     std::array<FootPoint, 2> points{};
     for (std::size_t i = 0; i < 2; ++i) {
-        const float time = std::max(state.time - static_cast<float>(i) * kVelocitySpan, 0.0f);
+        const float earlier = state.pace * static_cast<float>(i) * kVelocitySpan;
+        const float time = std::max(state.time - earlier, 0.0f);
         pose = context.skeleton.rest;
         sample_match_pose(context.database, context.assets, {state.clip, time}, pose);
         const FootPoint local = find_foot(context.skeleton, context.database.body.legs[foot], pose);
@@ -176,9 +190,9 @@ void capture_pose(const MatchContext& context, const MatchPlace& next, MotionMat
     sample_shown(context, state, 0, shown);
     sample_shown(context, state, kVelocitySpan, shown_earlier);
     const GroundMove rate = root_rate(playing(context, state), state.time);
-    const float left = state.blending != 0 ? fading_share(context.match.blend, state.clock) : 0;
-    const Vec2 way = rate.way + left * state.drift;
-    const float turn = rate.yaw + left * state.drift_turn;
+    const float left = state.blending != 0 ? fading_share(root_blend(context), state.clock) : 0;
+    const Vec2 way = state.pace * rate.way + left * state.drift;
+    const float turn = state.pace * rate.yaw + left * state.drift_turn;
     state.clip = next.clip;
     state.time = next.time;
     sample_clip_pose(context, state, 0, target);
@@ -195,8 +209,8 @@ void capture_pose(const MatchContext& context, const MatchPlace& next, MotionMat
             shown.translations[j], shown_earlier.translations[j], target.translations[j],
             target_earlier.translations[j], kVelocitySpan));
     }
-    state.drift = way - next_rate.way;
-    state.drift_turn = turn - next_rate.yaw;
+    state.drift = way - state.pace * next_rate.way;
+    state.drift_turn = turn - state.pace * next_rate.yaw;
     state.blending = 1;
 }
 
@@ -259,7 +273,7 @@ MatchRoot current_root(
                      + compose(back, root_of(clip, time - kGainSpan)).way;
     const float response = find_wish(context, {}).response;
     const Vec3 gain = transform.rotation * Vec3(sum.x, 0, sum.y)
-                      * (uniform_scale(transform) * response / (kGainSpan * kGainSpan));
+                      * (uniform_scale(transform) * response * square(state.pace / kGainSpan));
     return {
         {transform.position.x, transform.position.z},
         heading_of(context, transform.rotation),
@@ -268,19 +282,34 @@ MatchRoot current_root(
         state.turn};
 }
 
+/// A number of a row, not normalized.
+float number_of(const MatchDatabase& database, const MatchRow& row, std::size_t k) {
+    return database.scale[k] > 0 ? row[k] / database.scale[k] + database.mean[k] : 0.0f;
+}
+
 /// Turn toward the wanted path that the clip does not make [rad/s].
 float find_steering(const MatchContext& context, const MatchRow& query, const MatchRow& played) {
     const MatchDatabase& database = context.database;
-    const auto number = [&](const MatchRow& row, std::size_t k) {
-        return database.scale[k] > 0 ? row[k] / database.scale[k] + database.mean[k] : 0.0f;
-    };
     const auto heading = [&](const MatchRow& row) {
-        return std::atan2(number(row, kMatchPath + 6), number(row, kMatchPath + 7));
+        return std::atan2(
+            number_of(database, row, kMatchPath + 6), number_of(database, row, kMatchPath + 7));
     };
     const float angle = std::remainder(heading(query) - heading(played), 2 * kPi);
     const float time = static_cast<float>(kMatchAhead[1]) * kMatchStep;
     const float most = std::max(context.match.steer, 0.0f);
     return std::clamp(angle / time, -most, most);
+}
+
+/// The pace at which the clip goes as far as is wanted.
+float find_pace(const MatchContext& context, const MatchRow& query, const MatchRow& played) {
+    const MatchDatabase& database = context.database;
+    const auto way = [&](const MatchRow& row) {
+        return std::hypot(
+            number_of(database, row, kMatchPath + 4), number_of(database, row, kMatchPath + 5));
+    };
+    const float most = std::clamp(finite_or(context.match.pace, 0.0f), 0.0f, 0.5f);
+    const float far = way(played);
+    return far > 0 ? std::clamp(way(query) / far, 1 - most, 1 + most) : 1.0f;
 }
 
 /// Rows of a clip from one time to another.
@@ -325,15 +354,16 @@ void search(
     const bool can_steer = glm::length(state.velocity) > kSteerSpeed;
     const MatchRow& played = database.frame_at({state.clip, state.time});
     state.steer_aim = can_steer ? find_steering(context, query, played) : 0.0f;
+    state.pace_aim = can_steer ? find_pace(context, query, played) : 1.0f;
 }
 
 /// How the character moves in the next `dt`, in its own space.
 GroundMove next_move(const MatchContext& context, const MotionMatchState& state, float dt) {
     const MatchClip& clip = playing(context, state);
-    const float end = std::min(state.time + dt, clip.duration);
+    const float end = std::min(state.time + state.pace * dt, clip.duration);
     GroundMove move = compose(inverse(root_of(clip, state.time)), root_of(clip, end));
     if (state.blending != 0) {
-        const float blend = context.match.blend;
+        const float blend = root_blend(context);
         const float way = fading_way(blend, state.clock + dt) - fading_way(blend, state.clock);
         move.way += way * state.drift;
         move.yaw += way * state.drift_turn;
@@ -367,11 +397,13 @@ void follow_motor(const MotorState& motor, const Transform& transform, MotionMat
 
 /// Moves ahead in the clip, and the character with it.
 void advance(const MatchContext& context, float dt, Transform& transform, MotionMatchState& state) {
-    state.steering += (1 - std::exp(-dt / kSteerResponse)) * (state.steer_aim - state.steering);
+    const float share = 1 - std::exp(-dt / kSteerResponse);
+    state.steering += share * (state.steer_aim - state.steering);
     if (context.motor == nullptr) {
         move_root(next_move(context, state, dt), dt, transform, state);
     }
-    state.time = std::min(state.time + dt, playing(context, state).duration);
+    state.time = std::min(state.time + state.pace * dt, playing(context, state).duration);
+    state.pace += share * (state.pace_aim - state.pace);
     state.clock += state.blending != 0 ? dt : 0.0f;
     thread_local LocalPose pose;
     thread_local LocalPose shown;
@@ -458,9 +490,12 @@ void step_motion_match(
         follow_motor(*context.motor, transform, state);
     }
     const float interval = std::max(finite_or(context.match.interval, 0.1f), kShortestInterval);
+    const bool goes = glm::length(find_wish(context, intent).velocity) > kAnyWay;
     float left = std::isfinite(dt) ? std::clamp(dt, 0.0f, kLongestStep) : 0.0f;
     while (left > 0) {
-        if (state.since_search >= interval - kSearchEarly || is_over(context, state)) {
+        const bool is_time =
+            state.since_search >= interval - kSearchEarly && !(goes && has_just_begun(state));
+        if (is_time || is_over(context, state)) {
             state.since_search = 0;
             search(context, intent, transform, state);
         }

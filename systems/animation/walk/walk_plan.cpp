@@ -28,6 +28,7 @@ constexpr float kReachAhead = 0.62f;  // farthest that a foot lands from the roo
 constexpr float kApart = 0.09f;       // least distance of the feet sideways [leg lengths]
 constexpr float kFlatAt = 0.6f;       // of a flight, where the foot is level
 constexpr float kHeelRise = 0.18f;    // of the way behind, where heels begin to rise
+constexpr float kGainLasts = 0.3f;    // for which an acceleration is expected to go on [s]
 constexpr float kRunNearer = 0.05f;   // runners land nearer to the point below them
 constexpr float kRunCycle = 2.65f;    // of a run, of sqrt(leg / gravity)
 constexpr float kRunQuicker = 0.2f;   // of it per speed, of sqrt(leg gravity)
@@ -113,8 +114,13 @@ WalkStride find_stride(const Walk& walk, float leg, float speed, float stretch) 
     return {duration, speed * duration};
 }
 
+float speed_soon(const WalkMotion& motion) {
+    return std::max(
+        glm::length(motion.velocity), glm::length(motion.velocity + kGainLasts * motion.gain));
+}
+
 WalkStride find_stride(const Walk& walk, float leg, const WalkMotion& motion) {
-    const float speed = glm::length(motion.velocity);
+    const float speed = speed_soon(motion);
     const float turn = kTurnCadence * leg * std::abs(motion.turn);
     const float stretch = stride_stretch(motion.velocity, motion.heading);
     WalkStride stride = find_stride(walk, leg, std::sqrt(speed * speed + turn * turn), stretch);
@@ -133,7 +139,8 @@ float step_duration(const Walk& walk, std::uint32_t foot, float cycle) {
 }
 
 WalkForecast forecast_root(const WalkMotion& motion, float time) {
-    Vec3 way = time * motion.velocity;
+    const float gaining = std::min(time, kGainLasts);
+    Vec3 way = time * motion.velocity + gaining * (time - 0.5f * gaining) * motion.gain;
     if (motion.response > 0) {
         const float t = time / motion.response;
         const float decay = std::exp(-t);
@@ -158,7 +165,7 @@ Footprint plan_footprint(
     const Walk& walk, const WalkSize& size, const WalkMotion& motion, std::uint32_t foot,
     float time_left, const Footprint& stance) {
     const float cycle = find_stride(walk, size.leg, motion).duration;
-    const float run = run_share(size.leg, glm::length(motion.velocity));
+    const float run = run_share(size.leg, speed_soon(motion));
     const float on_ground = (1 - 0.5f * flight_steps(run)) * cycle;
     const float ahead = (kStanceAhead - kRunNearer * run) * on_ground
                         * (0.35f + 0.65f * leg_weights(walk, foot).hip);

@@ -63,8 +63,12 @@ struct WalkMotion {
     Vec3 pull = {0, 0, 0};      ///< what the velocity tends to [m/s]
     Vec3 wanted = {0, 0, 0};    ///< what `pull` tends to [m/s]
     float turn = 0.0f;          ///< [rad/s]
-    float response = 0.0f;      ///< time constant of both [s]; 0: the velocity stays
+    float response = 0.0f;      ///< time constant of both [s]; 0: `gain` changes it for a while
+    Vec3 gain = {0, 0, 0};      ///< acceleration of a root that something else moves [m/s^2]
 };
+
+/// The speed that steps are made for: that at which they end, if it is higher.
+[[nodiscard]] float speed_soon(const WalkMotion& motion);
 
 /// The cycle for this motion; turns take steps, too. Runs take steps at a nearly constant rate.
 [[nodiscard]] WalkStride find_stride(const Walk& walk, float leg, const WalkMotion& motion);

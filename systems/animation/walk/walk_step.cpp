@@ -30,8 +30,11 @@ constexpr float kHeadingError = 0.12f;        // [rad]
 constexpr float kSwingAround = 0.1f;          // of a stiff leg, sideways [leg lengths]
 constexpr float kBehind = 0.36f;              // of a foot that leaves the ground [strides]
 constexpr float kMinBehind = 0.2f;            // [leg lengths]
-constexpr float kFarBehind = 0.8f;            // [leg lengths]
-constexpr float kHurry = 8.0f;                // gain of the rate of steps [1/leg lengths]
+constexpr float kFarBehind = 0.72f;           // farthest that a leg reaches back [leg lengths],
+constexpr float kGainsCloser = 0.02f;         // and less by this per acceleration [s^2/m]
+constexpr float kFastestHurry = 3.0f;         // of steps, for a foot not to be left farther behind
+constexpr float kHurryAhead = 0.2f;           // for which an acceleration counts [s]
+constexpr float kMaxGain = 3.0f;              // acceleration that is planned for [m/s^2]
 constexpr float kLeanPerPull = 0.04f;         // [rad/(m/s^2)]
 constexpr float kClimbResponse = 0.25f;       // of the root on slopes and stairs [s]
 constexpr float kRootJump = 0.6f;             // of a root that is placed elsewhere [leg lengths]
@@ -85,20 +88,27 @@ struct WalkStep {
         return glm::distance(flat(home.place), flat(state.feet[foot].to)) > kPrintError * size.leg
                || std::abs(wrap_angle(home.heading - state.feet[foot].to_heading)) > kHeadingError;
     }
-    /// Steps are faster where a foot is left behind by more than a leg can reach.
+    /// Steps are faster where the foot on the ground would be left behind by more than a leg
+    /// reaches before it is its turn to fly.
     [[nodiscard]] float hurry() const {
-        float far = 0;
-        for (const WalkFoot& foot : state.feet) {
-            far = std::max(far, glm::distance(flat(foot.place), flat(motion.root)) / size.leg);
+        const WalkFoot& stance = state.feet[1 - state.flying];
+        const Vec3 ahead = motion.velocity + 0.5f * kHurryAhead * motion.gain;
+        const float fast = glm::length(ahead);
+        if (fast < kStandSpeed * size.leg) {
+            return 1;
         }
-        return 1 + kHurry * std::max(far - kFarBehind, 0.0f);
+        const float left = (1 - state.step) * duration_of(state.flying);
+        const float behind = glm::dot(flat(motion.root - stance.place), ahead) / fast;
+        const float far = (kFarBehind - kGainsCloser * glm::length(motion.gain)) * size.leg;
+        const float room = std::max(far - behind, 1e-3f);
+        return std::clamp(fast * left / room, 1.0f, kFastestHurry);
     }
     [[nodiscard]] float duration_of(std::uint32_t foot) const {
         return step_duration(walk, foot, stride().duration);
     }
     [[nodiscard]] float time_left(std::uint32_t foot) const {
         const float steps = state.step + (foot == state.flying ? 0.0f : 1.0f);
-        return std::max(state.feet[foot].flight - steps, 0.0f) * duration_of(foot);
+        return std::max(state.feet[foot].flight - steps, 0.0f) * duration_of(foot) / hurry();
     }
     [[nodiscard]] float rolling(std::uint32_t foot) const {
         const WalkFoot& place = state.feet[foot];
@@ -152,7 +162,8 @@ void lift_foot(const WalkStep& step, std::uint32_t which) {
     WalkFoot& foot = state.feet[which];
     const float pitch = step.rolling(which);
     state.flying = which;
-    foot.flight = flight_steps(state.run);
+    foot.flight =
+        flight_steps(std::max(state.run, run_share(step.size.leg, speed_soon(step.motion))));
     // When it left the ground; since then a part of a substep has passed.
     const float since = state.step * step.duration_of(which);
     foot.lift_rate = (pitch - foot.pitch) / step.dt;
@@ -307,6 +318,9 @@ void measure_root(const WalkState& before, WalkMotion& motion, float dt) {
     motion.turn += share * (turn - motion.turn);
     motion.wanted = motion.pull;
     motion.response = 0;
+    motion.gain = (motion.pull - motion.velocity) / kFollowResponse;
+    const float size = glm::length(motion.gain);
+    motion.gain *= size > kMaxGain ? kMaxGain / size : 1.0f;
 }
 
 /// Phase and amplitudes of hips, spine and arms.
@@ -317,7 +331,7 @@ void step_sway(const WalkStep& step) {
     state.activity_aim += share * ((steps ? 1.0f : 0.0f) - state.activity_aim);
     state.activity += share * (state.activity_aim - state.activity);
     state.vigor += share * (step.speed() / step.walk.speed - state.vigor);
-    state.run += share * (run_share(step.size.leg, step.speed()) - state.run);
+    state.run += share * (run_share(step.size.leg, speed_soon(step.motion)) - state.run);
     float rate = 0;
     if (steps) {
         rate = kPi / step.duration_of(state.flying);
