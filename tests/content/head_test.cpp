@@ -435,19 +435,40 @@ TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the sku
     }
 }
 
-TEST_CASE("head: single hairs line the scalp where its cards end") {
+TEST_CASE("head: single hairs line the scalp where its cards end, at the sides and behind, too") {
     const HeadPart hair = make_scalp_hair(HeadShape{});
     int fine = 0;
+    int beside = 0;
     for (std::size_t v = 0; v + 1 < hair.points.size(); v += 2) {  // pairs across a card
         const Vec3& a = hair.points[v].rest;
         const Vec3& b = hair.points[v + 1].rest;
         const float width = glm::distance(a, b);  // [cm]
         if (hair.mesh.uvs[v].y == 0) {
             fine += width < 0.07f ? 1 : 0;
+            beside += width < 0.07f && a.z < 3 ? 1 : 0;
             CHECK((width < 0.07f || scalp_hair_cover(0.5f * (a + b)) > 0.3f));
         }
     }
-    CHECK(fine > 80);
+    CHECK(fine > 300);
+    CHECK(beside > 150);
+}
+
+TEST_CASE("head: hair of the temples ends in an even line, cut to the hairline") {
+    const HeadPart hair = make_scalp_hair(HeadShape{});
+    int tips = 0;
+    int low = 0;
+    for (std::size_t v = 0; v + 1 < hair.points.size(); v += 2) {
+        const Vec3 p = 0.5f * (hair.points[v].rest + hair.points[v + 1].rest);
+        const float width = glm::distance(hair.points[v].rest, hair.points[v + 1].rest);
+        if (hair.mesh.uvs[v].y < 0.99f || width > 0.3f || p.y > 6 || p.z < 0.3f * std::abs(p.x)) {
+            continue;  // no tip of a lock before the ear
+        }
+        ++tips;
+        // 1 cm above it there is hair.
+        low += scalp_hair_cover(p + Vec3(0, 1, 0)) < 0.2f ? 1 : 0;
+    }
+    CHECK(tips > 60);
+    CHECK(low < tips / 20);
 }
 
 TEST_CASE("head: at weight 1 of the shape age every part is that of seventy years") {

@@ -141,16 +141,16 @@ void append_undercoat(HeadPart& part, const HeadShape& shape) {
     }
 }
 
-/// Single short hairs above the forehead, where cards end: thinner and fewer towards the skin, as a
-/// hairline is.
+/// Single short hairs along the whole hairline, where cards end: thinner and fewer towards the
+/// skin.
 void append_fine_hairs(HeadPart& part, const HeadShape& shape) {
-    constexpr int kHairs = 48000;  // on the whole sphere; some 100 are kept
+    constexpr int kHairs = 60000;  // on the whole sphere; some 500 are kept
     Random random(0, 0, name_hash("fine_hair"), 0);
     for (int i = 0; i < kHairs; ++i) {
         const std::array<float, 4> chance = {
             random.uniform(), random.uniform(), random.uniform(), random.uniform()};
         const Vec3 near = around_skull(i, kHairs);
-        if (near.z < 0 || near.y < 7.5f || std::abs(near.y - hairline(near)) > 2) {
+        if (std::abs(near.y - hairline(near)) > 1.6f) {
             continue;
         }
         Card card;
@@ -186,7 +186,7 @@ float scalp_hair_cover(const Vec3& p) {
 }
 
 HeadPart make_scalp_hair(const HeadShape& shape) {
-    constexpr int kCards = 3900;  // on the whole sphere around the skull; some 2400 are kept
+    constexpr int kCards = 3500;  // on the whole sphere around the skull; some 2200 are kept
     HeadPart part;
     part.mesh.name = "scalp";
     append_undercoat(part, shape);
@@ -214,7 +214,18 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         const float top = glm::smoothstep(3.0f, 11.0f, root.y);
         card.length = glm::mix(2.1f, 4.2f, top) * (0.75f + 0.4f * chance[1]);
         card.length *= glm::mix(1.0f, 0.4f + 0.4f * chance[0], edge);
-        card.width = glm::mix(0.5f, 0.65f, top) * (0.7f + 0.6f * chance[1]) * (1 - 0.7f * edge);
+        card.width = glm::mix(0.38f, 0.6f, top) * (0.7f + 0.6f * chance[1]) * (1 - 0.7f * edge);
+        // Its tip does not hang far below the hairline of sides and neck, where hair is cut.
+        for (int cut = 0; cut < 8; ++cut) {
+            const Vec3 middle = root + 0.5f * card.length * card.flow;
+            const Vec3 tip = middle + 0.5f * card.length * hair_flow(middle, card.out);
+            const bool fringe = root.z > 1.1f * std::abs(root.x);  // which is brushed aside
+            if (fringe || hairline(tip) - tip.y < 0.15f + 0.5f * square(chance[1])) {
+                break;
+            }
+            card.length *= 0.78f;
+            card.width *= 0.86f;
+        }
         card.taper = 0.8f;
         card.lift = glm::mix(0.1f, 0.75f, top) * (0.35f + 0.75f * chance[2]);
         card.strand = 7.31f * chance[3] + 3.17f * chance[0];
