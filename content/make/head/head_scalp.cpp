@@ -219,7 +219,7 @@ HeadPart make_scalp_hair(const HeadShape& shape) {
         for (int cut = 0; cut < 8; ++cut) {
             const Vec3 middle = root + 0.5f * card.length * card.flow;
             const Vec3 tip = middle + 0.5f * card.length * hair_flow(middle, card.out);
-            const bool fringe = root.z > 1.1f * std::abs(root.x);  // which is brushed aside
+            const bool fringe = tip.y > root.y - 0.3f * card.length;  // is brushed aside
             if (fringe || hairline(tip) - tip.y < 0.15f + 0.5f * square(chance[1])) {
                 break;
             }
