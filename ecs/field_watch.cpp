@@ -11,15 +11,6 @@
 namespace limn {
 namespace {
 
-bool same_field(const FieldInfo& field, const void* a, const void* b) {
-    const std::size_t count = element_count(field, a);
-    bool same = count == element_count(field, b);
-    for (std::size_t i = 0; same && i < count; ++i) {
-        same = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
-    }
-    return same;
-}
-
 void call_handlers(
     World& world, const std::vector<const FieldInfo*>& fields, const ComponentInfo& info,
     FieldNote note) {
@@ -62,10 +53,19 @@ void write_fields(World& world, Entity entity, AnyComponent value) {
     world.resource<FieldWatches>().calling = false;
 }
 
+bool equal_fields(const FieldInfo& field, const void* a, const void* b) {
+    const std::size_t count = element_count(field, a);
+    bool equal = count == element_count(field, b);
+    for (std::size_t i = 0; equal && i < count; ++i) {
+        equal = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
+    }
+    return equal;
+}
+
 std::vector<const FieldInfo*> changed_fields(const AnyComponent& a, const AnyComponent& b) {
     std::vector<const FieldInfo*> changed;
     for (const FieldInfo& field : a.info().fields) {
-        if (!same_field(field, field_ptr(a.data(), field), field_ptr(b.data(), field))) {
+        if (!equal_fields(field, field_ptr(a.data(), field), field_ptr(b.data(), field))) {
             changed.push_back(&field);
         }
     }

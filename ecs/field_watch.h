@@ -61,6 +61,9 @@ void watch_field(World& world, std::string field, FieldHandler handler) {
 /// values differ: all with Before, in the order of the fields, then all with After.
 void write_fields(World& world, Entity entity, AnyComponent value);
 
+/// Whether the fields at `a` and `b` have the same value, with all their elements.
+[[nodiscard]] bool equal_fields(const FieldInfo& field, const void* a, const void* b);
+
 /// The fields of `a` whose values differ in `b`, of the same type.
 [[nodiscard]] std::vector<const FieldInfo*>
 changed_fields(const AnyComponent& a, const AnyComponent& b);

@@ -61,7 +61,7 @@ inline constexpr float kNoDepth = 1e10f;
 
 struct FrameRequest {
     std::vector<std::string> aovs;  ///< of aov_names(); unknown ones are left out
-    bool few_triangles = false;     ///< a few of each mesh, to measure what the others cost
+    bool few_triangles = false;     ///< and instances of each mesh; maps that are kept are drawn so
 };
 
 /// What the mean of samples is taken of.

@@ -5,6 +5,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/placement.h"
 #include "ecs/components/transform.h"
+#include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
 #include "ecs/prefab.h"
 #include "ecs/world.h"
@@ -93,6 +94,9 @@ Status paste_tree(World& world, Entity parent, Entity root, KeptPlace kept) {
     const bool moves = kept == KeptPlace::World && world.has<Transform>(root);
     const Transform placed =
         moves ? placed_in(world, parent, world_from_entity(world, root)) : Transform{};
+    if (!validate_fields(component_info<Transform>(), &placed)) {
+        return fail("paste: found a parent without size, expected one with an inverse");
+    }
     LIMN_TRY(set_parent(world, root, parent));
     if (moves) {
         world.add(root, placed);

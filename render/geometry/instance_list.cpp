@@ -34,7 +34,7 @@ constexpr float kErrorScale = 1.5f;
 constexpr int kMaxShellStep = 8;        ///< of shells of distant fur
 constexpr float kShadowShells = 0.25f;  ///< as many per texel of shadow maps as per pixel
 
-// Of a draw that only compiles (RenderItems::sampled).
+// Of a draw of a few triangles (RenderItems::sampled).
 constexpr std::uint32_t kSampledIndices = 3 * 64;
 constexpr std::uint32_t kSampledInstances = 64;
 

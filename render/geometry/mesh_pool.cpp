@@ -178,7 +178,9 @@ void MeshPool::upload(
         indices.insert(indices.end(), level.indices.begin(), level.indices.end());
     }
     range.wide = mesh.positions.size() > kMaxShortVertices;
-    const std::vector<std::uint32_t> words = range.wide ? indices : in_pairs(indices);
+    const std::vector<std::uint32_t> pairs =
+        range.wide ? std::vector<std::uint32_t>() : in_pairs(indices);
+    const std::span<const std::uint32_t> words = range.wide ? indices : pairs;
     const std::uint32_t first_word =
         index_slots_.allocate_or_grow(static_cast<std::uint32_t>(words.size()), kInitialIndices);
     range.first_index = range.wide ? first_word : 2 * first_word;
@@ -208,7 +210,7 @@ void MeshPool::upload(
     if (streams_.has(VertexStream::Curvature)) {
         write_curvatures(streams_, mesh, range);
     }
-    indices_.write(std::size_t{4} * first_word, std::span<const std::uint32_t>(words));
+    indices_.write(std::size_t{4} * first_word, words);
 }
 
 void MeshPool::release(const MeshRange& range) {

@@ -21,14 +21,15 @@ namespace limn {
 
 /// Coarser triangles of a mesh, for its shadows.
 struct CoarseRange {
-    std::uint32_t first_index = 0;  ///< of the mesh's size
+    std::uint32_t first_index = 0;  ///< counted as that of the mesh
     std::uint32_t index_count = 0;
     float error = 0;  ///< CoarseTriangles::error [m]
 };
 
 /// The range of a mesh in the buffers.
 struct MeshRange {
-    std::uint32_t first_index = 0;  ///< in indices of its size from the buffer's begin
+    std::uint32_t first_index = 0;  ///< counted in indices of 2 or 4 bytes, as `wide` says, from
+                                    ///< the beginning of the buffer
     std::uint32_t index_count = 0;  ///< 0: nothing to draw
     bool wide = false;              ///< indices of 32 bits; otherwise of 16
     std::int32_t base_vertex = 0;
@@ -41,7 +42,8 @@ struct MeshRange {
     bool tangents = false;  ///< has vertex tangents, as normal maps need
 };
 
-/// Meshes of up to so many vertices have 16-bit indices: 0xffff, a restart elsewhere, is none.
+/// Meshes of up to so many vertices have 16-bit indices; 0xffff, which some APIs take for a
+/// primitive restart, is none of them.
 inline constexpr std::size_t kMaxShortVertices = 65535;
 
 /// GL_UNSIGNED_INT or GL_UNSIGNED_SHORT, and bytes of an index.

@@ -137,7 +137,8 @@ class RenderItems {
         const World& world, const MeshPool& meshes, const MaterialPool& materials,
         DeformedList& shapes, float alpha);
 
-    /// Draw only a few triangles and instances of each mesh, to compile what draws them.
+    /// Draw only a few triangles and instances of each mesh: to compile what draws them, or to
+    /// measure the others (FrameRequest::few_triangles).
     bool sampled = false;
 
     [[nodiscard]] std::size_t block_count() const { return count_; }

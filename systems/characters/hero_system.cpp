@@ -19,6 +19,7 @@ constexpr float kThrowCosine = 0.92f;  // of its facing to the aim, at which it 
 constexpr float kAimTime = 1.5f;       // after which it throws anyway, where it faces [s]
 constexpr float kHeaviest = 0.5f;      // of what it lifts, relative to the mass it pushes with
 constexpr float kAheadCosine = 0.2f;   // of what it can reach
+constexpr float kStillGround = 1e-3f;  // or slower: it does not move [m/s]
 constexpr float kStoodTime = 1.0f;     // between two places where it stood [s]
 
 Vec3 level_unit(Vec3 way, const Vec3& fallback) {
@@ -114,6 +115,9 @@ void update_heroes(
         intent.jump = !swims && (intent.jump || is_pressed(*input, "hero_jump"));
         LooseState* const carried = bodies.find<LooseState>(hero.carried);
         if (carried == nullptr || carried->carrier != entity) {
+            if (!hero.carried.is_null()) {
+                moves.aim = Vec3(0);  // it was to be thrown, and is gone
+            }
             hero.carried = {};
             const bool turned = moves.aim != Vec3(0) && step_aim(facing, time->step, moves, intent);
             if (turned || is_pressed(*input, "hero_carry")) {
@@ -151,7 +155,7 @@ void return_lost_heroes(
     heroes.each([&](Entity entity, const Hero& hero, HeroState& moves, MotorState& state,
                     Transform& transform) {
         moves.since_stood += time->step;
-        if (state.mode == MotorMode::Stand && state.drift == Vec3(0)
+        if (state.mode == MotorMode::Stand && glm::length(state.drift) < kStillGround
             && (moves.has_stood == 0 || moves.since_stood > kStoodTime)) {
             const Vec3 now = transform.position;
             moves.stood = {moves.has_stood != 0 ? moves.stood[1] : now, now};
@@ -163,6 +167,7 @@ void return_lost_heroes(
             transform.position = moves.stood[0];
             moves.stood[1] = moves.stood[0];
             state = {};
+            moves.aim = Vec3(0);
             commands.add(entity, Teleport{});
         }
     });

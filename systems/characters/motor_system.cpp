@@ -447,7 +447,8 @@ void add_motor_states(
         const Vec3 place = transform_point(placements.world(entity), Vec3(0));
         const bool was_held = state.held != 0 && step > 0;
         state = {
-            .drift = was_held ? (place - state.place) / step : Vec3(0),
+            .drift =
+                was_held ? shortened_to((place - state.place) / step, kMotorTopSpeed) : Vec3(0),
             .place = place,
             .held = 1,
             .air_time = was_held ? state.air_time + step : 0.0f,

@@ -40,7 +40,7 @@ TEST_CASE("bottleneck: the experiments save what a stage takes, and never less t
     CHECK(text.find("bound by geometry: 111.1 frames a second") != std::string::npos);
 }
 
-TEST_CASE("bottleneck: a few triangles of each mesh are drawn, of all of its instances") {
+TEST_CASE("bottleneck: a few triangles and instances of each mesh are drawn") {
     const auto opened = open_stage("gallery");
     REQUIRE(opened.ok());
     auto headless = create_headless_renderer();

@@ -284,7 +284,7 @@ TEST_CASE("play: while driving, the keys move the car and not the camera") {
     }
     PlaySession session;
     session.start(kRace);
-    xdotool("key F8 key space");
+    xdotool("key F8 key space sleep 6");  // until the message of what the keys do is gone
     const Pixels start = session.wait_until_still();
     // While time stands, nothing moves; a camera would fly.
     xdotool("keydown w sleep 0.5 keyup w");

@@ -7,6 +7,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
+#include "tests/content/level_text.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
@@ -109,17 +110,57 @@ TEST_CASE("subtree edits: pasted on itself, a copy is beside it; without one, pa
     CHECK(level.undo.undo_count() == edits);
 }
 
-TEST_CASE("subtree edits: as JSON, what was made is below its parent, what was deleted destroyed") {
+TEST_CASE("subtree edits: what was destroyed meanwhile is left out, the rest comes back") {
     EditedStreet level;
-    REQUIRE(level.editor.duplicate(level.world, level.undo, level.arm).ok());
+    REQUIRE(level.editor.remove(level.world, level.undo, level.post).ok());
+    level.world.destroy(level.arm);
+    CHECK(level.undo.undo(level.world) == "post: delete");
+    CHECK(level.world.value<Name>(level.post).text == "post");
+    CHECK(level.world.value<Name>(level.lamp).text == "lamp");
+    CHECK(parent_of(level.world, level.post) == level.street);
+    CHECK(level.undo.redo(level.world) == "post: delete");
+    CHECK_FALSE(exists(level.world, level.lamp));
+    level.world.destroy(level.post);
+    CHECK(level.undo.undo(level.world).empty());
+}
+
+TEST_CASE("subtree edits: nothing is pasted below what an undo took away") {
+    EditedStreet level;
+    REQUIRE(level.editor.copy(level.world, level.lamp).ok());
+    REQUIRE(level.editor.paste(level.world, level.undo, level.other).ok());
+    const Entity pasted = level.editor.pasted();
+    level.undo.undo(level.world);
+    const std::string before = level.text();
+    CHECK_FALSE(level.editor.paste(level.world, level.undo, pasted).ok());
+    CHECK_FALSE(level.editor.duplicate(level.world, level.undo, pasted).ok());
+    CHECK_FALSE(level.editor.remove(level.world, level.undo, pasted).ok());
+    CHECK_FALSE(level.editor.cut(level.world, level.undo, pasted).ok());
+    CHECK(level.text() == before);
+}
+
+TEST_CASE("subtree edits: as JSON, what was made is below its root, what was deleted destroyed") {
+    EditedStreet level;
+    REQUIRE(level.editor.copy(level.world, level.arm).ok());
+    REQUIRE(level.editor.paste(level.world, level.undo, level.street).ok());
+    World loaded;
+    test::spawn_into(loaded, edits_as_json(level.world, level.undo.done()));
+    CHECK(
+        parent_of(loaded, test::find_named(loaded, "arm 2")) == test::find_named(loaded, "street"));
+    CHECK(
+        parent_of(loaded, test::find_named(loaded, "lamp 2")) == test::find_named(loaded, "arm 2"));
     REQUIRE(level.editor.remove(level.world, level.undo, level.other).ok());
     REQUIRE(level.editor.cut(level.world, level.undo, level.lamp).ok());
     const std::string text = edits_as_json(level.world, level.undo.done());
     CAPTURE(text);
-    CHECK(text.find(R"("children": [)") != std::string::npos);
     CHECK(text.find(R"("name": "arm 2")") != std::string::npos);
     CHECK(text.find(R"("destroy": ["other"])") != std::string::npos);
     CHECK(text.find(R"(move "lamp" out of its parent's children)") != std::string::npos);
+    // Below a child, a patch cannot have children: a note says where it belongs.
+    REQUIRE(level.editor.duplicate(level.world, level.undo, level.arm).ok());
+    CHECK(
+        edits_as_json(level.world, level.undo.done())
+            .find(R"(move "arm 3" to the children of "post")")
+        != std::string::npos);
     const Entity nameless = level.world.create(Transform{});
     REQUIRE(level.editor.remove(level.world, level.undo, nameless).ok());
     CHECK(

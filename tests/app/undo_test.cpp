@@ -97,11 +97,24 @@ TEST_CASE("undo: an extended drag is undone in one step") {
     UndoStack stack;
     const Entity lamp = world.create(bright(1));
     edit_intensity(world, stack, lamp, 2);
-    stack.extend(AnyComponent::of(bright(9)));
+    Edit more;
+    more.entity = lamp;
+    more.before = AnyComponent::of(bright(2));
+    more.after = AnyComponent::of(bright(9));
+    stack.extend(more);
+    CHECK(stack.undo_count() == 1);
     stack.undo(world);
     CHECK(world.get<const PointLight>(lamp).intensity == 1);
     stack.redo(world);
     CHECK(world.get<const PointLight>(lamp).intensity == 9);
+    // An edit of something else in between stays as it is.
+    const Entity other = world.create(bright(3));
+    edit_intensity(world, stack, other, 4);
+    stack.extend(more);
+    CHECK(stack.undo_count() == 3);
+    stack.undo(world);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(other).intensity == 3);
 }
 
 TEST_CASE("undo: an added component is removed, a removed one restored") {

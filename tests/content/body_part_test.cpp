@@ -16,7 +16,6 @@
 namespace limn::body_part_test {
 namespace {
 
-/// On the front half of the image or the back one, the planar map seen from that side.
 constexpr float kPlanarMiddle = 1.7f / 21.3f;  ///< of a hand, of its length
 
 constexpr std::array<BodyPartKind, 3> kAll = {
@@ -96,6 +95,22 @@ TEST_CASE(
         }
     }
     CHECK(inside);
+}
+
+TEST_CASE(
+    "body part: the chart of a foot stays in its halves of the image"
+    * technique("wrinkle.furrow.map-planar")) {
+    const MeshData mesh = make_body_part({.part = BodyPartKind::Foot, .cells = 48});
+    Vec2 low = {1, 1};
+    Vec2 high = {0, 0};
+    for (const Vec2& uv : mesh.uvs) {
+        low = glm::min(low, uv);
+        high = glm::max(high, uv);
+    }
+    CHECK(low.x > 0);
+    CHECK(low.y > 0);
+    CHECK(high.x < 1);
+    CHECK(high.y < 1);
 }
 
 TEST_CASE(

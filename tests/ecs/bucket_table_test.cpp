@@ -23,7 +23,7 @@ TEST_CASE(
     CHECK(*table.find(11) == 'A');
 }
 
-TEST_CASE("bucket table: names are sums of characters; anagrams share a slot and are told apart") {
+TEST_CASE("bucket table: names are sums of characters; anagrams share a slot, and each is found") {
     CHECK(character_sum("object1") == 680);
     CHECK(character_sum("object2") == 681);
     CHECK(character_sum("Catfish") == 706);

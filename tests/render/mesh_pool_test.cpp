@@ -1,8 +1,10 @@
+#include "ecs/components/shadow.h"
 #include "render/geometry/mesh_pool.h"
 #include "render/geometry/triangle_order.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/technique.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace limn::test::mesh_pool_test {
@@ -144,6 +146,36 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    RenderTest, "mesh pool: new meshes are ordered for the vertex cache, edited ones are not"
+                    * technique("engine.opt-vertex")) {
+    std::vector<MeshData> meshes = {make_ball(24)};
+    // Triangles in an order that uses no vertex twice in a row.
+    std::vector<std::uint32_t>& indices = meshes[0].indices;
+    const std::size_t triangles = indices.size() / 3;
+    std::vector<std::uint32_t> far(indices.size());
+    for (std::size_t i = 0; i < triangles; ++i) {
+        const std::size_t other = i * 601 % triangles;
+        std::copy_n(
+            indices.begin() + static_cast<std::ptrdiff_t>(3 * other), 3,
+            far.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    indices = far;
+    const auto stored = [](const MeshPool& pool) {
+        const MeshRange& range = pool.meshes()[0];
+        std::vector<std::uint16_t> values(range.index_count);
+        pool.indices().read(2 * range.first_index, std::as_writable_bytes(std::span(values)));
+        return std::vector<std::uint32_t>(values.begin(), values.end());
+    };
+    MeshPool pool;
+    pool.update(meshes);
+    CHECK(stored(pool) != indices);
+    CHECK(stored(pool) == order_for_cache(indices, meshes[0].positions.size()));
+    ++meshes[0].version;
+    pool.update(meshes);
+    CHECK(stored(pool) == indices);
+}
+
+TEST_CASE_FIXTURE(
     Scene, "mesh pool: meshes with indices of both sizes are drawn, and cast shadows, alike"
                * technique("engine.compact-data")) {
     const MeshData ball = make_ball(32);
@@ -152,7 +184,8 @@ TEST_CASE_FIXTURE(
     many.normals.resize(many.positions.size(), Vec3(0, 0, 1));
     many.uvs.resize(ball.uvs.empty() ? 0 : many.positions.size());
     many.tangents.resize(ball.tangents.empty() ? 0 : many.positions.size());
-    shine(DirectionalLight{}, at({1, 3, 2}));
+    const Entity sun = shine(
+        DirectionalLight{}, affine_from({0, 0, 0}, glm::angleAxis(-0.9f, Vec3(1, 0, 0)), Vec3(1)));
     const MeshId narrow = add(ball);
     const MeshId wide = add(many);
     place(add(make_square()), add(Material{}), at({0, 0, -1}));
@@ -164,7 +197,10 @@ TEST_CASE_FIXTURE(
         balls.push_back(place(narrow, clay, affine_from(position, {1, 0, 0, 0}, Vec3(0.2f))));
     }
     const RenderView view = look({0, 0, 2}, {0, 0, 0}, 96, 96);
+    const gpu::FloatImage unshadowed = radiance(view);
+    world.add(sun, Shadow{.resolution = 512});
     const gpu::FloatImage expected = radiance(view);
+    CHECK(expected.pixels != unshadowed.pixels);
     CHECK(draw(view).statistics.draws == 1);
     for (std::size_t i = 0; i < balls.size(); i += 2) {
         world.get<MeshInstance>(balls[i]).mesh = wide;

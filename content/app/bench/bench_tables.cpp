@@ -28,8 +28,6 @@ std::vector<std::string> level_names(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         names.push_back(fmt::format("{} {}", kWords[i % std::size(kWords)], i / 2));
     }
-    std::ranges::sort(names);
-    names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
 

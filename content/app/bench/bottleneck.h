@@ -15,7 +15,7 @@ struct Stage;
 // other changes nothing. A pipeline of stages delivers a frame in the time of its slowest one, and
 // each frame takes the sum of all.
 //
-// The stages are told apart by experiments: an image with 1/64 of the pixels, then also a few
+// The stages are separated by experiments: an image with 1/64 of the pixels, then also a few
 // triangles of each mesh. What that saves is the time of rasterization and of geometry; what is
 // left is the application's. Software OpenGL runs all of them on the same cores, but the
 // experiments hold.

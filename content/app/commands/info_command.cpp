@@ -269,7 +269,8 @@ void print_assets(
         const MeshData& mesh = meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
         fmt::print(
-            "    {:>8} triangles  {}-bit indices  {:.2f} transformed each  {:.3g} x {:.3g} x "
+            "    {:>8} triangles  {}-bit indices  {:.2f} vertices transformed per triangle  {:.3g} "
+            "x {:.3g} x "
             "{:.3g} "
             "m  {}\n",
             mesh.indices.size() / 3, 8 * bytes_of_index(mesh), transformed(mesh), size.x, size.y,

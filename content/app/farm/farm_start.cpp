@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -78,13 +79,13 @@ int choose_chunk(const FarmOptions& options, std::size_t frames) {
         std::clamp<std::size_t>(frames / (processes * kChunksPerProcess), 1, kMaxAutoChunk));
 }
 
-constexpr double kRepeatedSound = 120;  ///< [s] kept of sounds that repeat
+constexpr double kMoreSound = 120;  ///< [s] kept beyond the film, for frames that are added
 
-/// Until all sounds have been heard.
+/// When all sounds have been heard.
 double end_of_sounds(const std::vector<SceneSound>& sounds) {
     double end = 0;
     for (const SceneSound& sound : sounds) {
-        end = std::max(end, sound.every > 0 ? kRepeatedSound : sound.start + sound.data.duration());
+        end = std::max(end, sound.every > 0 ? INFINITY : sound.start + sound.data.duration());
     }
     return end;
 }
@@ -97,8 +98,9 @@ Status freeze_sound(const Stage& stage, FarmJob& job) {
     if (is_silent || !job.film_settings.sound.empty()) {
         return Done{};
     }
-    const double end =
-        std::max({(job.frames.back() + 1) / job.fps, stage.scene.duration, end_of_sounds(sounds)});
+    const double film_end = (job.frames.back() + 1) / job.fps;
+    const double end = std::max(
+        {film_end, stage.scene.duration, std::min(end_of_sounds(sounds), film_end + kMoreSound)});
     const std::string file = job.folder + "/scene.wav";
     LIMN_TRY(save_wave(mix_sounds(sounds, 0, end), file));
     job.film_settings.sound = LIMN_TRY(freeze_other_file(job, "sound", file));
@@ -395,7 +397,7 @@ Status warn_of_silence(const FarmJob& job) {
         const double end = LIMN_TRY(load_sound(file)).duration();
         if ((job.frames.back() + 1) / job.fps > end) {
             log_warn(
-                "{}: the kept sound ends at {} s; a new job has what repeats after that", file,
+                "{}: the kept sound ends at {} s; a new job has what is heard after that", file,
                 fmt::format("{:.1f}", end));
         }
     }

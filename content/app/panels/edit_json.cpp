@@ -313,26 +313,30 @@ TreeChanges tree_changes(const World& world, std::span<const Edit> edits) {
     return changes;
 }
 
-/// Writes what was made below its parent, and destroys by an event what was deleted. What was moved
-/// has to be moved in the file: returns a note for it.
+/// Writes what was made, and destroys by an event what was deleted. A level's patch can have
+/// children only in a root of the level: elsewhere they have to be moved in the file, as what was
+/// moved. Returns a note for that.
 std::string add_tree_changes(
     World& world, const TreeChanges& changes, JsonValue& entities, JsonValue& destroyed) {
     const Hierarchy& tree = hierarchy(world);
+    std::vector<Entity> moved = changes.moved;
     for (const Entity root : changes.made) {
         const Entity parent = parent_of(world, root);
         if (changes.own.contains(parent)) {
             continue;  // written with it
         }
         const Name* const above = name_of(world, parent);
-        JsonValue no_copies = json_object();
-        JsonValue* const target =
-            above != nullptr ? patched(world, entities, no_copies, parent, *above) : nullptr;
+        const bool is_root = above != nullptr && parent_of(world, parent).is_null()
+                             && !is_copy(*above) && !world.has<FromGltf>(parent);
         JsonValue object = CopiedTree(world, tree, root).object_of(root);
-        if (target == nullptr) {
+        if (!is_root) {
             entities.items.push_back(std::move(object));
+            if (!parent.is_null()) {
+                moved.push_back(root);
+            }
             continue;
         }
-        JsonValue& children = member(*target, "children");
+        JsonValue& children = member(named(entities, above->text), "children");
         if (children.items.empty()) {
             children = json_array();
         }
@@ -346,7 +350,7 @@ std::string add_tree_changes(
             destroyed.items.push_back(json_of(std::string_view(name)));
         }
     }
-    for (const Entity entity : changes.moved) {
+    for (const Entity entity : moved) {
         const Entity parent = parent_of(world, entity);
         note += fmt::format(
             "  // move {} {}", name_or_number(world, entity),

@@ -56,11 +56,6 @@ bool matches(const ComponentInfo& info, std::string_view part) {
               });
 }
 
-/// What was deleted has no components.
-bool exists(const World& world, Entity entity) {
-    return world.alive(entity) && !world.components_of(entity).empty();
-}
-
 /// A search field as wide as the panel.
 void draw_search(const char* hint, std::string& text) {
     ImGui::SetNextItemWidth(-1);
@@ -107,6 +102,8 @@ std::string Inspector::edits_as_json(World& world) const {
 
 std::string Inspector::run(World& world, TreeCommand command) {
     rows_built_at_ = -1.0;
+    dragging_.clear();
+    selected_ = exists(world, selected_) ? selected_ : Entity{};
     const auto edit = [&]() -> Result<std::string> {
         switch (command) {
         case TreeCommand::Cut:
@@ -252,7 +249,8 @@ void Inspector::rebuild_rows(World& world) {
 }
 
 void Inspector::draw_tree(const HudStyle& style, World& world) {
-    if (rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLifetime) {
+    const bool edited = std::exchange(rows_revision_, undo_.revision()) != undo_.revision();
+    if (edited || rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLifetime) {
         rebuild_rows(world);
         rows_built_at_ = ImGui::GetTime();
     }
@@ -532,12 +530,12 @@ void Inspector::edit_copy(
     }
     apply_edit_value(world, edit, after);
     edit.label = fmt::format("{}.{}", label, change.field);
-    if (dragging_ == edit.label && undo_.redo_count() == 0 && undo_.undo_count() > 0) {
-        undo_.extend(std::move(after));
+    edit.after = std::move(after);
+    if (dragging_ == edit.label) {
+        undo_.extend(std::move(edit));
         return;
     }
     dragging_ = ImGui::IsAnyItemActive() ? edit.label : "";
-    edit.after = std::move(after);
     undo_.record(std::move(edit));
 }
 

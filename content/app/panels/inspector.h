@@ -107,8 +107,9 @@ class Inspector {
     bool skeleton_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
-    double rows_built_at_ = -1.0;  // [s]
-    bool reveal_ = false;          // scroll to the selected entity
+    double rows_built_at_ = -1.0;      // [s]
+    std::uint64_t rows_revision_ = 0;  // of the edits that they show
+    bool reveal_ = false;              // scroll to the selected entity
     std::uint32_t material_ = 0;
     Entity material_of_;              // whose material was shown when it was selected
     std::uint64_t copied_edits_ = 0;  // revision of the edits that were copied last

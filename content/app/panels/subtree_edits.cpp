@@ -90,7 +90,7 @@ Result<Entity> copy_below(World& world, UndoStack& undo, Entity entity, Entity p
 }  // namespace
 
 Result<std::string> SubtreeEditor::cut(World& world, UndoStack& undo, Entity entity) {
-    if (!world.alive(entity)) {
+    if (!exists(world, entity)) {
         return fail("cut: nothing is selected");
     }
     const Departure move(world, entity);
@@ -104,7 +104,7 @@ Result<std::string> SubtreeEditor::cut(World& world, UndoStack& undo, Entity ent
 }
 
 Result<std::string> SubtreeEditor::copy(const World& world, Entity entity) {
-    if (!world.alive(entity)) {
+    if (!exists(world, entity)) {
         return fail("copy: nothing is selected");
     }
     clipboard_ = {entity, false};
@@ -114,8 +114,11 @@ Result<std::string> SubtreeEditor::copy(const World& world, Entity entity) {
 Result<std::string>
 SubtreeEditor::paste(World& world, UndoStack& undo, Entity parent, KeptPlace kept) {
     const Entity root = clipboard_.root;
-    if (!world.alive(root) || world.components_of(root).empty()) {
+    if (!exists(world, root)) {
         return fail("paste: nothing was cut or copied");
+    }
+    if (!parent.is_null() && !exists(world, parent)) {
+        return fail("paste: found a destroyed entity, expected a living parent");
     }
     if (parent == root) {  // it is still selected
         parent = parent_of(world, root);
@@ -136,7 +139,7 @@ SubtreeEditor::paste(World& world, UndoStack& undo, Entity parent, KeptPlace kep
 }
 
 Result<std::string> SubtreeEditor::duplicate(World& world, UndoStack& undo, Entity entity) {
-    if (!world.alive(entity)) {
+    if (!exists(world, entity)) {
         return fail("duplicate: nothing is selected");
     }
     pasted_ = LIMN_TRY(copy_below(world, undo, entity, parent_of(world, entity)));
@@ -144,7 +147,7 @@ Result<std::string> SubtreeEditor::duplicate(World& world, UndoStack& undo, Enti
 }
 
 Result<std::string> SubtreeEditor::remove(World& world, UndoStack& undo, Entity entity) {
-    if (!world.alive(entity)) {
+    if (!exists(world, entity)) {
         return fail("delete: nothing is selected");
     }
     const std::string label = entity_label(world, entity) + ": delete";

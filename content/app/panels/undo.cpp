@@ -52,32 +52,55 @@ bool apply_to_material(World& world, std::uint32_t index, const AnyComponent& va
     return true;
 }
 
-/// Gives the entities their components, or takes all that they have. False if one is destroyed.
+/// Gives the entities their components, or takes all that they have; not those that were destroyed
+/// since. False if the root was.
 bool apply_tree(World& world, const EditedTree& tree, bool redo) {
-    if (!std::ranges::all_of(tree.entities, [&](Entity one) { return world.alive(one); })) {
+    if (!world.alive(tree.entities.front())) {
         return false;
     }
-    if (tree.made == redo) {
-        fill(world, tree.components, tree.entities);
-    } else {
+    if (tree.made != redo) {
         strip(world, tree.entities);
+        return true;
     }
+    Prefab living = tree.components;
+    for (std::size_t i = 0; i < tree.entities.size(); ++i) {
+        if (!world.alive(tree.entities[i])) {
+            living.entities[i] = {};
+        }
+    }
+    fill(world, living, tree.entities);
     return true;
+}
+
+const ComponentInfo* edited_type(const Edit& edit) {
+    const AnyComponent& value = edit.before.is_empty() ? edit.after : edit.before;
+    return value.is_empty() ? nullptr : &value.info();
+}
+
+bool is_same_target(const Edit& a, const Edit& b) {
+    return !a.tree && !b.tree && a.part == b.part && a.entity == b.entity
+           && a.material == b.material && edited_type(a) == edited_type(b);
 }
 
 bool is_target(const Edit& edit, const LevelChange& change) {
     if (edit.tree) {
         return false;
     }
-    const AnyComponent& value = edit.before.is_empty() ? edit.after : edit.before;
     return edit.part == change.part && edit.entity == change.entity
-           && edit.material == change.material && &value.info() == &change.now.info();
+           && edit.material == change.material && edited_type(edit) == &change.now.info();
 }
 
 }  // namespace
 
+bool exists(const World& world, Entity entity) {
+    return world.alive(entity) && !world.components_of(entity).empty();
+}
+
 void strip(World& world, std::span<const Entity> entities) {
     for (const Entity entity : entities) {
+        if (!world.alive(entity)) {
+            continue;
+        }
         for (const ComponentId id : world.components_of(entity)) {
             world.remove(entity, id);
         }
@@ -89,12 +112,12 @@ void record_edit(
     std::string& last) {
     apply_edit_value(world, edit, after);
     edit.label = what;
-    if (last == what && undo.redo_count() == 0 && undo.undo_count() > 0) {
-        undo.extend(std::move(after));
+    edit.after = std::move(after);
+    if (last == what) {
+        undo.extend(std::move(edit));
         return;
     }
     last = what;
-    edit.after = std::move(after);
     undo.record(std::move(edit));
 }
 
@@ -122,10 +145,13 @@ void UndoStack::record(Edit edit) {
     done_ = edits_.size();
 }
 
-void UndoStack::extend(AnyComponent after) {
+void UndoStack::extend(Edit edit) {
+    if (done_ == 0 || done_ < edits_.size() || !is_same_target(edits_.back(), edit)) {
+        record(std::move(edit));
+        return;
+    }
     ++revision_;
-    LIMN_CHECK(done_ > 0 && done_ == edits_.size());
-    edits_.back().after = std::move(after);
+    edits_.back().after = std::move(edit.after);
 }
 
 bool UndoStack::step(World& world, bool redo) {
@@ -134,7 +160,11 @@ bool UndoStack::step(World& world, bool redo) {
     const bool applied = edit.tree ? apply_tree(world, *edit.tree, redo)
                                    : apply_edit_value(world, edit, redo ? edit.after : edit.before);
     if (!applied) {
+        const bool joined = edit.joined;
         edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(at));
+        if (!joined && at < edits_.size()) {
+            edits_[at].joined = false;  // the next is now the first of its group
+        }
     }
     done_ = redo && applied ? at + 1 : at;
     return applied;
@@ -170,6 +200,7 @@ void UndoStack::adopt(std::span<const LevelChange> changes) {
     ++revision_;
     std::vector<Edit> kept;
     std::size_t done = 0;
+    bool lost_first = false;  // of the group that is read
     for (std::size_t i = 0; i < edits_.size(); ++i) {
         Edit& edit = edits_[i];
         for (const LevelChange& change : changes) {
@@ -184,9 +215,11 @@ void UndoStack::adopt(std::span<const LevelChange> changes) {
         const bool has_effect = edit.tree || edit.before.is_empty() || edit.after.is_empty()
                                 || !same_value(edit.before, edit.after);
         if (has_effect) {
+            edit.joined = edit.joined && !lost_first;
             kept.push_back(std::move(edit));
             done += i < done_ ? 1 : 0;
         }
+        lost_first = !has_effect && (lost_first || !edit.joined);
     }
     edits_ = std::move(kept);
     done_ = done;

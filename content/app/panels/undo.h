@@ -46,8 +46,9 @@ class UndoStack {
 
     /// Records an edit already applied. Clears the redo history.
     void record(Edit edit);
-    /// Extends the last recorded edit: its final value is now `after`.
-    void extend(AnyComponent after);
+    /// Records an edit already applied, of what the last edit changed: that one's final value is
+    /// now this one's. If the last edit changed something else, as record().
+    void extend(Edit edit);
 
     /// Undoes the last edit and returns its label, or "" if there is none. Edits of destroyed
     /// entities are dropped and skipped.
@@ -79,7 +80,10 @@ class UndoStack {
 /// false if the target no longer exists.
 bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value);
 
-/// Removes all components of the entities, which stay.
+/// Alive, and not deleted: a deleted entity has no components.
+[[nodiscard]] bool exists(const World& world, Entity entity);
+
+/// Removes all components of the living entities, which stay.
 void strip(World& world, std::span<const Entity> entities);
 
 /// Sets the target of `edit` to `after` and records that as `what`. Extends the last edit instead

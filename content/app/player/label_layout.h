@@ -11,7 +11,7 @@ namespace limn {
 /// asked for is the most important.
 class LabelLayout {
   public:
-    /// Labels of points left of `middle` [pixels] are rather left of them than right.
+    /// Labels of points left of `middle` [pixels] prefer their left side, others their right.
     explicit LabelLayout(float middle = 0) : middle_(middle) {}
 
     /// Top left corner of a label of this size [pixels], `gap` beside, above or below of `point`;

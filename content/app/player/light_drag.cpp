@@ -106,7 +106,7 @@ Transform facing_light(const Transform& transform, const Vec3& center, const Vec
 void LightDrag::drag(
     World& world, UndoStack& undo, const Vec3& center, const Vec2& motion, float height,
     const Affine& world_from_camera) {
-    const bool begins = !world.alive(light_);
+    const bool begins = !std::as_const(world).has<Transform>(light_);
     const Vec3 to_camera = transform_point(world_from_camera, Vec3(0)) - center;
     const std::optional<Entity> light =
         begins ? brightest_light(world, center, normalize_or(to_camera, {0, 0, 1})) : light_;
@@ -121,10 +121,10 @@ void LightDrag::drag(
             transform, transform_point(to_parent, center), motion, height,
             to_parent * world_from_camera));
     apply_edit_value(world, edit, edit.after);
-    if (begins || undo.redo_count() > 0 || undo.undo_count() == 0) {
+    if (begins) {
         undo.record(std::move(edit));
     } else {
-        undo.extend(std::move(edit.after));
+        undo.extend(std::move(edit));
     }
     light_ = *light;
 }

@@ -15,6 +15,7 @@
 #include "ecs/components/water.h"
 #include "ecs/components/water_noise.h"
 #include "ecs/field_access.h"
+#include "ecs/field_watch.h"
 #include "ecs/hierarchy.h"
 #include "ecs/reflect.h"
 #include "ecs/world.h"
@@ -407,15 +408,6 @@ constexpr Ignored kIgnored[] = {
     {"ocean", "fetch", has_no_fetch, "unless the spectrum is jonswap or tma"},
 };
 
-bool are_equal_fields(const FieldInfo& field, const void* a, const void* b) {
-    const std::size_t count = element_count(field, a);
-    bool equal = count == element_count(field, b);
-    for (std::size_t i = 0; equal && i < count; ++i) {
-        equal = equal_elements(field, element_ptr(field, a, i), element_ptr(field, b, i));
-    }
-    return equal;
-}
-
 /// A row of kIgnored with what it names.
 struct IgnoredField {
     const Ignored* row = nullptr;
@@ -459,7 +451,7 @@ bool is_set(const World& world, Entity entity, const IgnoredField& one) {
     const void* const value = world.find(entity, one.component->id);
     const void* const defaults = one.component->defaults;
     return value != nullptr && defaults != nullptr
-           && !are_equal_fields(
+           && !equal_fields(
                *one.field, field_ptr(value, *one.field), field_ptr(defaults, *one.field));
 }
 

@@ -482,7 +482,7 @@ float redness(const PartModel& model, const Vec3& p) {
 Vec2 chart_position(BodyPartKind part, const Vec3& p, int copy) {
     if (part == BodyPartKind::Foot) {
         // The map folds down at the sides and up the leg, about which it is unrolled.
-        constexpr float kLeg = 3.3f;
+        constexpr float kLeg = 2.8f;  // less than its radius, so that the back fits into the image
         const float turn = std::atan2(p.x, p.y - 4.6f) + 2.0f * kPi * static_cast<float>(copy);
         const float leg = glm::smoothstep(5.0f, 8.5f, p.z);
         const float across = p.x * (1.0f + 0.22f * std::max(3.5f - p.z, 0.0f));

@@ -150,7 +150,7 @@ vec3 surface_normal(float strength, out vec3 smooth_normal) {
 #ifdef DETAIL_MAP
     vec3 detail = tangent_normal(MAP_TEXEL(DETAIL_MAP, kDetailSlot).xyz);
     vec2 detail_slopes = detail.xy / max(detail.z, 0.1);
-#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK)
+#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
     detail_slopes *= clamp(vertex_color.a, 0.0, 1.0);
 #endif
     n_ts.xy += n_ts.z * detail_slopes;  // slopes of both heights add up

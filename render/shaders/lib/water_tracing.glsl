@@ -17,9 +17,9 @@ const float kMirrorThickness = 0.2;   // of the surfaces they hit, relative to t
 const float kNothing = 1e9;
 const float kFarther = 0.8;           // ratio of the reciprocal distances of a surface and one before it
 const float kMaxSpread = 6.0;         // between hits of neighboring pixels on the same surface [px]
-const float kApproach = 0.25;         // how much less a ray and one surface differ in reciprocal distance after bisection
+const float kApproach = 0.25;         // share of the difference before bisection that may be left on a single surface
 const float kPastEdge = 2.0;          // of the surface that hid a ray [px]
-const int kPasses = 3;                // behind surfaces that a ray seemed to hit
+const int kPasses = 3;                // rejected hits after which a ray ends
 const int kBendSteps = 8;
 const float kOpenDistance = 150.0;    // of refracted rays in pixels without ground: farther hits are ignored [m]
 // After a hit, loops repeat their last step: in llvmpipe (Mesa 22.3) a pixel iterates as long as the loop of a neighbor
@@ -61,7 +61,8 @@ vec2 clamp_to_screen(vec2 pixel) {
 vec3 radiance_at(vec2 pixel) {
     return texelFetch(behind_radiance, ivec2(pixel), 0).rgb;
 }
-// Mean over a pixel of the water whose center sees `pixel`; `is_inside`: so are its neighbors, if they see the same.
+// Mean of what a pixel of the water reflects, the ray of whose center hits `pixel`. `is_inside`: its neighbors are water,
+// too.
 vec3 mean_radiance_at(vec2 pixel, bool is_inside) {
     vec2 across = dFdx(pixel);
     vec2 down = dFdy(pixel);
@@ -174,6 +175,7 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, b
         // a plane between the last two points unless they are on different surfaces.
         float other = hiding < kNothing ? 0.5 * (hiding + surface) : kNothing;
         float last = high;
+        float behind_last = behind;
         float apart_at_first = ahead + behind;
         vec2 ends = vec2(hiding, surface);
         int steps = 0;
@@ -203,6 +205,7 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, b
         trust = recedes ? 0.0 : is_one ? 1.0 : clamp(3.5 - 2.0 * behind * z * z / thickness, 0.0, 1.0);
         met = met && (trust > 0.0 || side.up < 0.0 || ++passes >= kPasses);
         low = last;
+        ahead = -behind_last;
         hiding = surface;
     } while (!met && step < count);
     vec2 hit = from + u * along;
