@@ -248,8 +248,10 @@ TEST_CASE(
         const auto high = static_cast<std::int8_t>(sound[2 * i + 1]);
         return 256 * high + low;
     };
+    // The farm's sound goes on after the film, for frames that may be added: AAC looks ahead at it.
+    constexpr std::size_t kLookAhead = 8000 / 20;
     int largest = 0;
-    for (std::size_t i = 0; i < farmed.size() / 2; ++i) {
+    for (std::size_t i = 0; i + kLookAhead < farmed.size() / 2; ++i) {
         largest = std::max(largest, std::abs(sample(farmed, i) - sample(rendered, i)));
     }
     CHECK(largest < 200);
