@@ -52,6 +52,7 @@ if [ -d ../shared/assets ]; then
     ln -s "$(realpath ../shared/assets)/ict-facekit" "$folder/ICT-FaceKit"
     ln -s "$(realpath ../shared/assets)/makehuman" "$folder/makehuman"
 fi
+printf '# darker\nset exposure.ev = -1\nduplicate pool\n' >"$folder/arrange.txt"
 for name in model.glb helmet.glb face.glb clock.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/model.obj"
 for name in low.obj high.obj; do

@@ -19,6 +19,7 @@
 #include <imgui.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn::inspector_test {
@@ -113,6 +114,38 @@ TEST_CASE("inspector: looking at every component changes nothing") {
             ImGui::End();
         });
     }
+}
+
+TEST_CASE(
+    "inspector: every kind of component shows the fields of its description, in their order"
+    * technique("engine.editor-inspector")) {
+    const OffscreenHud hud;
+    World world;
+    make_everything(world);
+    std::size_t kinds = 0;
+    for (const ComponentInfo* info : all_components()) {
+        if (info->defaults == nullptr || info->fields.empty()) {
+            continue;
+        }
+        AnyComponent value(*info, info->defaults);
+        const std::string text = hud.text([&] {
+            ImGui::Begin("one");
+            ImGui::SetWindowSize({400, 4000});
+            edit_fields(hud.style, world, *info, value.data());
+            ImGui::End();
+        });
+        CAPTURE(info->name);
+        CAPTURE(text);
+        std::size_t at = 0;
+        for (const FieldInfo& field : info->fields) {
+            CAPTURE(field.name);
+            at = text.find(field.name, at);
+            REQUIRE(at != std::string::npos);
+            at += std::string_view(field.name).size();
+        }
+        ++kinds;
+    }
+    CHECK(kinds > 100);
 }
 
 TEST_CASE(

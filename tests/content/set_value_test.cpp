@@ -113,6 +113,7 @@ TEST_CASE(
         {"lamp.point_light.intensty", "1"},
         {"lamp.point_lihgt.intensity", "1"},
         {"lamp.spot_light.intensity", "-1"},
+        {"lamp.transform.scale", "[1, 0, 1]"},
         {"lmap.point_light.intensity", "1"},
         {"lamp.point_light", "1"},
         {"lamp", "1"},
@@ -157,6 +158,20 @@ TEST_CASE(
     CHECK(
         error_of("Bone.001")
         == "--set Bone.001: found no component, expected ENTITY.COMPONENT.FIELD");
+}
+
+TEST_CASE("set: of several entities of one name all change, or none") {
+    World world;
+    spawn_into(world, "{}");
+    const Entity wide =
+        world.create(Name{"lamp"}, SpotLight{.inner_angle = 0.1f, .outer_angle = 1});
+    const Entity narrow =
+        world.create(Name{"lamp"}, SpotLight{.inner_angle = 0.1f, .outer_angle = 0.3f});
+    CHECK_FALSE(set_value(world, "lamp.spot_light.inner_angle", "0.5").ok());
+    CHECK(world.get<const SpotLight>(wide).inner_angle == 0.1f);
+    CHECK(set_value(world, "lamp.spot_light.inner_angle", "0.2").ok());
+    CHECK(world.get<const SpotLight>(wide).inner_angle == 0.2f);
+    CHECK(world.get<const SpotLight>(narrow).inner_angle == 0.2f);
 }
 
 TEST_CASE("set: handlers are called once before and after, and not for a value that is refused") {

@@ -6,6 +6,7 @@
 #include "content/app/commands/command_entry.h"
 #include "content/app/commands/command_options.h"
 #include "content/app/commands/compare_command.h"
+#include "content/app/commands/edit_command.h"
 #include "content/app/commands/hash_command.h"
 #include "content/app/commands/head_scene.h"
 #include "content/app/commands/image_commands.h"
@@ -248,6 +249,34 @@ Command add_check(CLI::App& program, std::string& scene) {
                 "Example:\n"
                 "  limn check my.level.json");
     return {app, [&scene] { return run_check(scene); }};
+}
+
+Command add_edit(CLI::App& program, EditOptions& options) {
+    CLI::App* app = program.add_subcommand("edit", "Edit a level as the inspector does");
+    app->add_option("level", options.scene, "level name or .level.json")
+        ->type_name("LEVEL")
+        ->required();
+    app->add_option("edits", options.lines, "edits, each as one word")->type_name("EDIT");
+    app->add_option("--script", options.script, "a file with an edit per line; # begins a comment")
+        ->type_name("FILE");
+    app->add_option("-o", options.out, "the edited level; default: prints what would change")
+        ->type_name("FILE");
+    app->footer(
+        "An EDIT is one of\n"
+        "  set PATH = VALUE   as --set of `limn render`\n"
+        "  add NAME.COMPONENT, remove NAME.COMPONENT\n"
+        "  cut NAME, copy NAME, paste [PARENT], duplicate NAME, delete NAME\n"
+        "  undo, redo\n"
+        "where NAME and PARENT are entities. Whole entities take their children with them; what "
+        "is\n"
+        "cut stays where it is in the world until it is pasted, and after. An edit that fails "
+        "ends\n"
+        "the command, and nothing is written. The comments of the level's file are not kept.\n\n"
+        "Examples:\n"
+        "  limn edit pond \"set sun.transform.rotation = [215, -20, 0]\"\n"
+        "  limn edit pond \"duplicate pool\" \"delete pool\" undo -o my.level.json\n"
+        "  limn edit pond --script arrange.txt -o my.level.json");
+    return {app, [&options] { return run_edit(options); }};
 }
 
 Command add_quality(CLI::App& program) {
@@ -658,30 +687,21 @@ struct AllOptions {
     SpeakOptions speak;
     std::vector<std::string> show;
     std::string checked;
+    EditOptions edit;
     ComponentsOptions components;
 };
 
 std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
-    return {
-        add_play(program, options.play),
-        add_render(program, options.render),
-        add_film_command(program, options.film),
-        add_farm(program, options.farm),
-        add_view(program, options.view),
-        add_bench(program, options.bench),
-        add_check(program, options.checked),
-        add_hash(program, options.hash),
-        add_quality(program),
-        add_compare(program, options.compare),
-        add_bake(program, options.bake),
-        add_info(program, options.info_file),
-        add_import(program, options.import_options),
-        add_make(program, options.make),
-        add_export(program, options.exported),
-        add_speak(program, options.speak),
-        add_levels(program),
-        add_shows(program, options.show),
-        add_components(program, options.components)};
+    return {add_play(program, options.play),         add_render(program, options.render),
+            add_film_command(program, options.film), add_farm(program, options.farm),
+            add_view(program, options.view),         add_bench(program, options.bench),
+            add_check(program, options.checked),     add_edit(program, options.edit),
+            add_hash(program, options.hash),         add_quality(program),
+            add_compare(program, options.compare),   add_bake(program, options.bake),
+            add_info(program, options.info_file),    add_import(program, options.import_options),
+            add_make(program, options.make),         add_export(program, options.exported),
+            add_speak(program, options.speak),       add_levels(program),
+            add_shows(program, options.show),        add_components(program, options.components)};
 }
 
 /// "limn render" for a parsed subcommand, else "limn".

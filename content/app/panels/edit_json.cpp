@@ -255,9 +255,9 @@ const ComponentInfo& edited_info(const Edit& edit) {
     return edit.before.is_empty() ? edit.after.info() : edit.before.info();
 }
 
-std::string name_or_number(const World& world, Entity entity) {
+std::string name_text(const World& world, Entity entity) {
     const Name* const name = name_of(world, entity);
-    return name != nullptr ? '"' + name->text + '"' : fmt::format("entity {}", entity.index);
+    return name != nullptr ? name->text : std::string();
 }
 
 /// The value before its first edit.
@@ -313,11 +313,11 @@ TreeChanges tree_changes(const World& world, std::span<const Edit> edits) {
     return changes;
 }
 
-/// Writes what was made, and destroys by an event what was deleted. A level's patch can have
-/// children only in a root of the level: elsewhere they have to be moved in the file, as what was
-/// moved. Returns a note for that.
-std::string add_tree_changes(
-    World& world, const TreeChanges& changes, JsonValue& entities, JsonValue& destroyed) {
+/// Writes what was made, and destroys by an event what was deleted. A patch can have children only
+/// in a root of the level: what was made elsewhere has to be moved in the file, as what was moved.
+void add_tree_changes(
+    World& world, const TreeChanges& changes, JsonValue& entities, JsonValue& destroyed,
+    LevelEdits& edits) {
     const Hierarchy& tree = hierarchy(world);
     std::vector<Entity> moved = changes.moved;
     for (const Entity root : changes.made) {
@@ -342,22 +342,24 @@ std::string add_tree_changes(
         }
         children.items.push_back(std::move(object));
     }
-    std::string note;
+    bool has_unnamed = false;
     for (const std::string& name : changes.deleted) {
-        if (name.empty()) {
-            note = "  // without the entities deleted that have no name: delete them in the file";
-        } else {
+        has_unnamed = has_unnamed || name.empty();
+        if (!name.empty()) {
             destroyed.items.push_back(json_of(std::string_view(name)));
         }
     }
+    if (has_unnamed) {
+        edits.left_out.emplace_back(
+            "the entities deleted that have no name: delete them in the file");
+    }
     for (const Entity entity : moved) {
         const Entity parent = parent_of(world, entity);
-        note += fmt::format(
-            "  // move {} {}", name_or_number(world, entity),
-            parent.is_null() ? "out of its parent's children"
-                             : "to the children of " + name_or_number(world, parent));
+        edits.moves.push_back({name_text(world, entity), std::nullopt});
+        if (!parent.is_null()) {
+            edits.moves.back().parent = name_text(world, parent);
+        }
     }
-    return note;
 }
 
 }  // namespace
@@ -398,8 +400,9 @@ std::string edit_note(const World& world, Entity entity) {
                 : "its edits cannot be copied; edit the prefab or the repeat in the level's file");
 }
 
-std::string edits_as_json(World& world, std::span<const Edit> edits) {
-    JsonValue patch = json_object();
+LevelEdits level_edits(World& world, std::span<const Edit> edits) {
+    LevelEdits all;
+    JsonValue& patch = all.patch = json_object();
     JsonValue entities = json_array();
     JsonValue copies = json_object();
     bool left_out = false;
@@ -426,6 +429,11 @@ std::string edits_as_json(World& world, std::span<const Edit> edits) {
                 JsonValue value;
                 if (world.has(edit.entity, info.id)) {
                     value = edited(AnyComponent::read(world, edit.entity, info).data());
+                } else if (is_copy(*name)) {
+                    all.left_out.push_back(
+                        info.name + " removed from " + in_quotes(name->text)
+                        + ": an event can only set fields of a copy");
+                    break;
                 }
                 if (JsonValue* const target =
                         patched(world, entities, copies, edit.entity, *name)) {
@@ -453,7 +461,10 @@ std::string edits_as_json(World& world, std::span<const Edit> edits) {
         }
     }
     JsonValue destroyed = json_array();
-    const std::string note = add_tree_changes(world, trees, entities, destroyed);
+    add_tree_changes(world, trees, entities, destroyed, all);
+    if (left_out) {
+        all.left_out.emplace_back("edits of children of copies: a level cannot refer to those");
+    }
     if (!entities.items.empty()) {
         set_member(patch, "entities", std::move(entities));
     }
@@ -468,9 +479,28 @@ std::string edits_as_json(World& world, std::span<const Edit> edits) {
         }
         set_member(patch, "events", json_array({std::move(event)}));
     }
-    return write_json(patch) + note
-           + (left_out ? "  // without edits of children of copies: a level cannot refer to those"
-                       : "");
+    return all;
+}
+
+std::string describe_move(const LevelEdits::Move& move) {
+    const auto named = [](const std::string& name) {
+        return name.empty() ? "an entity without a name" : in_quotes(name);
+    };
+    return named(move.entity) + ' '
+           + (move.parent ? "to the children of " + named(*move.parent)
+                          : "out of its parent's children");
+}
+
+std::string edits_as_json(World& world, std::span<const Edit> edits) {
+    const LevelEdits all = level_edits(world, edits);
+    std::string text = write_json(all.patch);
+    for (const LevelEdits::Move& move : all.moves) {
+        text += "  // move " + describe_move(move);
+    }
+    for (const std::string& what : all.left_out) {
+        text += "  // without " + what;
+    }
+    return text;
 }
 
 }  // namespace limn

@@ -81,6 +81,7 @@ bool is_editable(const ComponentInfo& info) {
 
 void Inspector::reset() {
     undo_.clear();
+    note_saved();
     subtrees_.reset();
     selected_ = noted_ = {};
     rows_.clear();
@@ -93,6 +94,9 @@ void Inspector::reset() {
 }
 
 std::size_t Inspector::edit_count() const {
+    if (saved_revision_ == undo_.revision()) {
+        return 0;
+    }
     return static_cast<std::size_t>(std::ranges::count(undo_.done(), false, &Edit::joined));
 }
 
@@ -173,18 +177,28 @@ void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedu
 }
 
 void Inspector::draw_edits(World& world) {
-    const bool has_edits = edit_count() > 0;
-    ImGui::BeginDisabled(!has_edits);
+    const std::size_t edits = undo_.undo_count();
+    ImGui::BeginDisabled(edits == 0);
+    save_ = ImGui::SmallButton("Save") || save_;
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("as a new level beside this one (Ctrl S)");
+    }
+    ImGui::SameLine();
     if (ImGui::SmallButton("Copy the edits as JSON")) {
         ImGui::SetClipboardText(edits_as_json(world).c_str());
         copied_edits_ = undo_.revision();
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
-    const bool is_copied = has_edits && copied_edits_ == undo_.revision();
+    const bool is_saved = edit_count() == 0;
+    const bool is_copied = copied_edits_ == undo_.revision();
+    const auto joined =
+        static_cast<std::size_t>(std::ranges::count(undo_.done(), true, &Edit::joined));
     ImGui::TextColored(
-        kHudDim, has_edits ? "%zu, %s" : "none yet", edit_count(),
-        is_copied ? "copied" : "Ctrl Z undoes");
+        kHudDim, edits > 0 ? "%zu, %s" : "none yet", edits - joined,
+        is_saved    ? "saved"
+        : is_copied ? "copied"
+                    : "Ctrl Z undoes");
 }
 
 void Inspector::draw_entities(const HudStyle& style, World& world) {

@@ -38,6 +38,8 @@ class Inspector {
     [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
     /// Edits that leaving the level would lose.
     [[nodiscard]] std::size_t edit_count() const;
+    /// The edits so far are in a file now.
+    void note_saved() { saved_revision_ = undo_.revision(); }
     /// Those edits as a patch of the level (edit_json.h).
     [[nodiscard]] std::string edits_as_json(World& world) const;
     /// What the keys and buttons for whole entities do to the selected one.
@@ -52,6 +54,8 @@ class Inspector {
     [[nodiscard]] bool take_step() { return std::exchange(step_, false); }
     /// Whether "Edit furrows" of the selected entity was pressed since the last call.
     [[nodiscard]] bool take_furrows() { return std::exchange(furrows_, false); }
+    /// Whether "Save" was pressed since the last call.
+    [[nodiscard]] bool take_save() { return std::exchange(save_, false); }
     /// Whether "Show skeleton" of the selected entity was pressed since the last call.
     [[nodiscard]] bool take_skeleton() { return std::exchange(skeleton_, false); }
     /// For a new world: clears the selection and the undo stack.
@@ -105,14 +109,16 @@ class Inspector {
     bool step_ = false;
     bool furrows_ = false;
     bool skeleton_ = false;
+    bool save_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
     double rows_built_at_ = -1.0;      // [s]
     std::uint64_t rows_revision_ = 0;  // of the edits that they show
     bool reveal_ = false;              // scroll to the selected entity
     std::uint32_t material_ = 0;
-    Entity material_of_;              // whose material was shown when it was selected
-    std::uint64_t copied_edits_ = 0;  // revision of the edits that were copied last
+    Entity material_of_;                // whose material was shown when it was selected
+    std::uint64_t copied_edits_ = 0;    // revision of the edits that were copied last
+    std::uint64_t saved_revision_ = 0;  // likewise saved
     StoragePanel storage_;
     std::string dragging_;  // label of the edit that a drag extends
 };

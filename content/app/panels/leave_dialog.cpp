@@ -46,6 +46,8 @@ void LeaveDialog::draw(const HudStyle& style, const Inspector& inspector, World&
         const std::size_t edits = inspector.edit_count();
         if (edits > 0) {
             ImGui::Text("%zu edit%s of this level will be lost.", edits, edits == 1 ? "" : "s");
+            saves_ = ImGui::Button("Save  (S)") || saves_;
+            ImGui::SameLine();
             if (ImGui::Button("Copy the edits as JSON")) {
                 ImGui::SetClipboardText(inspector.edits_as_json(world).c_str());
                 copied_ = true;

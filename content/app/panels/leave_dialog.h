@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace limn {
 
@@ -22,7 +23,11 @@ class LeaveDialog {
     /// The action that was accepted since the last call; run it between frames.
     [[nodiscard]] std::function<void()> take_accepted();
 
-    /// Draws the question with the number of edits and a button that copies them as JSON.
+    /// Whether "Save" was pressed since the last call.
+    [[nodiscard]] bool take_save() { return std::exchange(saves_, false); }
+
+    /// Draws the question with the number of edits, and buttons that save them and copy them as
+    /// JSON.
     void draw(const HudStyle& style, const Inspector& inspector, World& world);
 
   private:
@@ -31,6 +36,7 @@ class LeaveDialog {
     std::function<void()> action_;    // empty: nothing is asked
     std::function<void()> accepted_;  // to be taken
     bool copied_ = false;             // the edits, since it asks
+    bool saves_ = false;
 };
 
 }  // namespace limn

@@ -165,6 +165,9 @@ Status Player::run() {
         if (const std::string message = inspector_.take_message(); !message.empty()) {
             hud_->toast(message);
         }
+        if (inspector_.take_save() || leave_.take_save()) {
+            save_edits();
+        }
         if (inspector_.take_focus()) {
             focus_selection();
         }

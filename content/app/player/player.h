@@ -93,6 +93,8 @@ class Player {
     void toggle_paths();
     void run_on_selected(Inspector::TreeCommand command);
     void undo_or_redo(bool undo);
+    /// Writes the level with the inspector's edits as a new file, and later ones to the same.
+    void save_edits();
     [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
     /// Drag and wheel of an orbiting camera, or of a model's initial camera, which then becomes
     /// one.
@@ -216,6 +218,7 @@ class Player {
     bool screenshot_with_hud_ = false;
     bool exr_wanted_ = false;
     int files_saved_ = 0;
+    std::string edited_path_;  ///< of the level that save_edits wrote since the level was loaded
 };
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "content/app/commands/image_file.h"
 #include "content/app/commands/image_notes.h"
 #include "content/app/commands/trial_file.h"
+#include "content/app/panels/edit_save.h"
 #include "content/app/player/player.h"
 #include "content/game/wrinkle_trial_system.h"
 #include "content/load/files/atomic_file.h"
@@ -131,6 +132,29 @@ void Player::follow_trial() {
     report_saved(path, write_file(path, write_trials(all)));
     fmt::print("{}", describe_tally(tally_trials(all)));
     std::fflush(stdout);
+}
+
+void Player::save_edits() {
+    const UndoStack& edits = inspector_.undo_stack();
+    if (edits.undo_count() == 0) {
+        hud_->toast("no edits to save");
+        return;
+    }
+    const std::string path =
+        edited_path_.empty() ? new_edited_path(stage_->scene.path) : edited_path_;
+    const Result<EditedLevel> level =
+        edited_level(stage_->scene.path, path, stage_->world, edits.done());
+    const Status status = level ? write_file(path, level->text) : Status(level.error());
+    report_saved(path, status);
+    if (!status) {
+        return;
+    }
+    edited_path_ = path;
+    inspector_.note_saved();
+    for (const std::string& what : level->left_out) {
+        log_warn("{}: saved without {}", path, what);
+        hud_->toast("saved without " + what, ToastKind::Bad);
+    }
 }
 
 void Player::report_saved(const std::string& path, const Status& status) {

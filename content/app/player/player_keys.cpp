@@ -173,6 +173,8 @@ std::span<const PlayerKey> Player::keys() {
          has_edits},
         {"Edit", "", "redo", GLFW_KEY_Z, kControl | kShift,
          [](Player& p) { p.undo_or_redo(false); }},
+        {"Edit", "Ctrl S", "save the edits as a new level", GLFW_KEY_S, kControl,
+         [](Player& p) { p.save_edits(); }, has_edits},
 
         {"Program", "F5", "reload the shaders (changed files reload by themselves)", GLFW_KEY_F5, 0,
          [](Player& p) { p.reload_shaders(true); }},
@@ -202,6 +204,8 @@ void Player::handle_key(const KeyPress& press) {
             leave_.accept();
         } else if (press.key == GLFW_KEY_ESCAPE || press.key == GLFW_KEY_N) {
             leave_.stay();
+        } else if (press.key == GLFW_KEY_S) {
+            save_edits();
         }
         return;
     }

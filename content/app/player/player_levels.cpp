@@ -35,6 +35,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     level_times_ = level_file_times();
     level_error_.clear();
     inspector_.reset();
+    edited_path_.clear();
     furrows_.reset();
     skeleton_.reset();
     markers_.close();

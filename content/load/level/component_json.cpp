@@ -427,31 +427,6 @@ struct ComponentReader {
     }
 };
 
-/// Constraints beyond the ranges of single fields; empty when satisfied.
-std::string constraint_error(const ComponentInfo& info, const void* object) {
-    if (&info == &component_info<Transform>()) {
-        const Vec3 scale = static_cast<const Transform*>(object)->scale;
-        if (scale.x == 0.0f || scale.y == 0.0f || scale.z == 0.0f) {
-            return "found a scale of 0, expected a nonzero scale along each axis";
-        }
-    }
-    if (&info == &component_info<SpotLight>()) {
-        const auto* light = static_cast<const SpotLight*>(object);
-        if (light->inner_angle > light->outer_angle) {
-            return fmt::format(
-                "found an inner_angle {} above the outer_angle {}, expected at most that",
-                light->inner_angle, light->outer_angle);
-        }
-    }
-    if (&info == &component_info<Environment>()) {
-        const auto* environment = static_cast<const Environment*>(object);
-        if (environment->sky == SkyKind::Panorama && environment->panorama.index == kNoAsset) {
-            return "found a panorama sky without the image \"panorama\", expected both";
-        }
-    }
-    return "";
-}
-
 JsonValue write_floats(const FieldInfo& info, const void* field) {
     const auto* floats = static_cast<const float*>(field);
     std::vector<JsonValue> items;
@@ -594,6 +569,30 @@ Result<double> expect_number(
                 + or_with_unit(unit));
     }
     return number;
+}
+
+std::string constraint_error(const ComponentInfo& info, const void* object) {
+    if (&info == &component_info<Transform>()) {
+        const Vec3 scale = static_cast<const Transform*>(object)->scale;
+        if (scale.x == 0.0f || scale.y == 0.0f || scale.z == 0.0f) {
+            return "found a scale of 0, expected a nonzero scale along each axis";
+        }
+    }
+    if (&info == &component_info<SpotLight>()) {
+        const auto* light = static_cast<const SpotLight*>(object);
+        if (light->inner_angle > light->outer_angle) {
+            return fmt::format(
+                "found an inner_angle {} above the outer_angle {}, expected at most that",
+                light->inner_angle, light->outer_angle);
+        }
+    }
+    if (&info == &component_info<Environment>()) {
+        const auto* environment = static_cast<const Environment*>(object);
+        if (environment->sky == SkyKind::Panorama && environment->panorama.index == kNoAsset) {
+            return "found a panorama sky without the image \"panorama\", expected both";
+        }
+    }
+    return "";
 }
 
 Status read_component(

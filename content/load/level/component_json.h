@@ -90,6 +90,9 @@ unexpected(const JsonValue& json, const JsonLocation& location, std::string_view
     const JsonValue& json, double min, double max, const JsonLocation& location,
     std::string_view unit = "");
 
+/// What is wrong with the values of fields together: "found a scale of 0, expected ..."; or "".
+[[nodiscard]] std::string constraint_error(const ComponentInfo& info, const void* object);
+
 /// Sets the fields that the JSON object names and keeps the others. `object` is of type `info`. On
 /// an error some fields may already be set: work on a copy.
 [[nodiscard]] Status read_component(

@@ -33,9 +33,7 @@ class World;
 //     ]
 //
 // On is the level with `set`; off is that with `off` as well, or the plain level if there is no
-// `off`. Both are patches of the level (JSON merge patch, RFC 7386): objects merge, null removes
-// a member, anything else replaces it. An object under "entities" or "children" has the names of
-// entities as keys, and under the key "+" an array of entities to add.
+// `off`. Both are patches of the level (level_patch.h).
 
 /// A camera position, with the lens of the level's camera.
 struct ShowCamera {

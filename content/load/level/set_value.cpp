@@ -10,6 +10,7 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <utility>
 
 // Techniques: engine.param-access
 
@@ -61,6 +62,9 @@ Status set_field(
         target.shape = FieldShape::One;
     }
     LIMN_TRY(read_field(value, target, data, location, names));
+    if (const std::string problem = constraint_error(info, copy.data()); !problem.empty()) {
+        return fail("{}: {}", location.file, problem);
+    }
     for (const FieldInfo& changed : info.fields) {
         copy_field(changed, field_ptr(object, changed), field_ptr(copy.data(), changed));
     }
@@ -88,7 +92,7 @@ Status add_to_entities(
 Status set_in_entities(
     World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
     std::string_view field_path, const JsonValue& value, const JsonLocation& location) {
-    bool is_set = false;
+    std::vector<std::pair<Entity, AnyComponent>> changed;
     for (const Entity entity : entities) {
         AnyComponent component = AnyComponent::read(world, entity, info);
         if (component.is_empty()) {
@@ -96,11 +100,13 @@ Status set_in_entities(
         }
         LIMN_TRY(set_field(
             info, component.data(), field_path, value, location, make_name_resolver(world)));
-        write_fields(world, entity, std::move(component));
-        is_set = true;
+        changed.emplace_back(entity, std::move(component));
     }
-    return is_set ? Status(Done{})
-                  : add_to_entities(world, entities, info, field_path, value, location);
+    for (auto& [entity, component] : changed) {
+        write_fields(world, entity, std::move(component));
+    }
+    return !changed.empty() ? Status(Done{})
+                            : add_to_entities(world, entities, info, field_path, value, location);
 }
 
 /// Creates the resource with default values first if the scene has none.
@@ -120,25 +126,28 @@ Status set_in_resource(
     return Done{};
 }
 
-Status set_in_material(
-    World& world, std::string_view rest, const JsonValue& value, const JsonLocation& location) {
-    Assets* const assets = world.find_resource<Assets>();
+Result<SetTarget>
+find_material_target(const World& world, std::string_view rest, const JsonLocation& location) {
+    const Assets* const assets = world.find_resource<Assets>();
     std::vector<std::string_view> names;
-    Material* named = nullptr;
+    SetTarget target;
+    std::size_t longest = 0;
     for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
-        Material& material = assets->materials[i];
-        names.emplace_back(material.name);
+        const std::string& name = assets->materials[i].name;
+        names.emplace_back(name);
         // Names of glTF materials may contain dots: the longest match is used.
-        if (rest.starts_with(material.name + '.')
-            && (named == nullptr || material.name.size() > named->name.size())) {
-            named = &material;
+        if (rest.starts_with(name + '.') && (target.info == nullptr || name.size() > longest)) {
+            longest = name.size();
+            target = {
+                LevelPart::Material,
+                &component_info<Material>(),
+                {},
+                static_cast<std::uint32_t>(i),
+                std::string(rest.substr(longest + 1))};
         }
     }
-    if (named != nullptr) {
-        ++assets->material_version;
-        return set_field(
-            component_info<Material>(), named, rest.substr(named->name.size() + 1), value, location,
-            make_name_resolver(world));
+    if (target.info != nullptr) {
+        return target;
     }
     const std::string_view name = rest.substr(0, rest.find('.'));
     return fail(
@@ -166,11 +175,11 @@ Error unknown_target(const World& world, std::string_view path, const JsonLocati
 
 /// Splits `path` at the last dot after an entity's name: names of glTF nodes may
 /// contain dots.
-Status set_in_named(
-    World& world, std::string_view path, const JsonValue& value, const JsonLocation& location) {
+Result<SetTarget>
+find_named_target(const World& world, std::string_view path, const JsonLocation& location) {
     for (std::size_t dot = path.rfind('.'); dot != std::string_view::npos && dot > 0;
          dot = path.rfind('.', dot - 1)) {
-        const std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
+        std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
         if (entities.empty()) {
             continue;
         }
@@ -186,7 +195,8 @@ Status set_in_named(
         if (end + 1 >= rest.size()) {
             return fail("{}: found no field after {}, expected one", location.file, info->name);
         }
-        return set_in_entities(world, entities, *info, rest.substr(end + 1), value, location);
+        return SetTarget{
+            LevelPart::Component, info, std::move(entities), 0, std::string(rest.substr(end + 1))};
     }
     if (!find_entities(world, path).empty()) {
         return fail("{}: found no component, expected ENTITY.COMPONENT.FIELD", location.file);
@@ -196,24 +206,44 @@ Status set_in_named(
 
 }  // namespace
 
-Status set_value(World& world, std::string_view path, std::string_view value) {
+Result<SetTarget> find_set_target(const World& world, std::string_view path) {
     const std::string name = "--set " + std::string(path);
     const JsonLocation location{name, ""};
-    JsonValue json = parse_value(value);
-    json.at = {};
     const std::size_t dot = path.find('.');
     if (dot == std::string_view::npos || dot + 1 >= path.size()) {
         return fail("{}: found no field, expected ENTITY.COMPONENT.FIELD or RESOURCE.FIELD", name);
     }
     const std::string_view first = path.substr(0, dot);
     if (first == "materials") {
-        return set_in_material(world, path.substr(dot + 1), json, location);
+        return find_material_target(world, path.substr(dot + 1), location);
     }
     const ComponentInfo* const resource = find_resource(first);
     if (resource != nullptr && find_entities(world, first).empty()) {
-        return set_in_resource(world, *resource, path.substr(dot + 1), json, location);
+        return SetTarget{LevelPart::Resource, resource, {}, 0, std::string(path.substr(dot + 1))};
     }
-    return set_in_named(world, path, json, location);
+    return find_named_target(world, path, location);
+}
+
+Status set_value(World& world, std::string_view path, std::string_view value) {
+    const std::string name = "--set " + std::string(path);
+    const JsonLocation location{name, ""};
+    JsonValue json = parse_value(value);
+    json.at = {};
+    const SetTarget target = LIMN_TRY(find_set_target(world, path));
+    switch (target.part) {
+    case LevelPart::Resource:
+        return set_in_resource(world, *target.info, target.field, json, location);
+    case LevelPart::Material: {
+        Assets& assets = *world.find_resource<Assets>();
+        LIMN_TRY(set_field(
+            *target.info, &assets.materials[target.material], target.field, json, location,
+            make_name_resolver(world)));
+        ++assets.material_version;
+        return Done{};
+    }
+    default:
+        return set_in_entities(world, target.entities, *target.info, target.field, json, location);
+    }
 }
 
 NameResolver make_name_resolver(const World& world) {

@@ -1,9 +1,15 @@
 #pragma once
 
 #include "content/load/level/component_json.h"
+#include "content/load/level/level_update.h"
 #include "ecs/base/result.h"
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
 
+#include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace limn {
 
@@ -20,6 +26,17 @@ class World;
 /// no quotes: `materials.gold.base_color = #ffcc80`. Changes all entities of that name, or nothing
 /// on an error.
 [[nodiscard]] Status set_value(World& world, std::string_view path, std::string_view value);
+
+/// What a path of set_value names: components of entities, a resource or a material.
+struct SetTarget {
+    LevelPart part = LevelPart::Component;
+    const ComponentInfo* info = nullptr;
+    std::vector<Entity> entities;  ///< of a Component: all of that name
+    std::uint32_t material = 0;    ///< index into Assets
+    std::string field;             ///< with dots
+};
+
+[[nodiscard]] Result<SetTarget> find_set_target(const World& world, std::string_view path);
 
 /// Resolve names of entities and assets of a world, for reading and writing components as JSON. The
 /// world must outlive them.

@@ -129,6 +129,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.cut-copy-paste", "cut, copy and paste of subtrees, undo"},
     {"engine.depth-first", "depth prepass, z-prepass, early z"},
     {"engine.draw-frame", "order of the passes of a frame"},
+    {"engine.editor-inspector", "level editor, inspector, edits by script, save"},
     {"engine.explode", "mesh that breaks into pieces"},
     {"engine.explosion", "explosion"},
     {"engine.hash-bucket", "hash tables of buckets"},

@@ -1,0 +1,321 @@
+#include "content/app/commands/stage.h"
+#include "content/app/panels/edit_json.h"
+#include "content/app/panels/edit_save.h"
+#include "content/app/panels/edit_script.h"
+#include "content/app/panels/inspector.h"
+#include "content/load/files/atomic_file.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/post.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+#include "tests/support.h"
+#include "tests/technique.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn::edit_script_test {
+namespace {
+
+constexpr const char* kStreet = R"({
+  // a comment
+  "title": "A street",
+  "resources": {"exposure": {"ev": 1}},
+  "materials": {"red": {"base_color": [0.8, 0.1, 0.05]}},
+  "meshes": {"box": {"make": "box"}},
+  "prefabs": {"lantern": {"point_light": {"intensity": 5}, "spot_light": {"intensity": 1},
+                          "children": [{"name": "flame", "point_light": {"intensity": 2}}]}},
+  "entities": [
+    {"name": "street", "transform": {"position": [0, 0, 5]}, "children": [
+      {"name": "post", "transform": {"position": [1, 2, 3]}, "children": [
+        {"name": "arm", "children": [{"name": "lamp", "point_light": {"intensity": 3}}]}]},
+      {"name": "other"}]},
+    {"name": "left", "prefab": "lantern"},
+    {"name": "right", "prefab": "lantern", "spot_light": {"intensity": 2}},
+    {"name": "row", "repeat": {"count": [2, 1, 1]}, "spot_light": {}},
+    {"name": "box", "mesh_instance": {"mesh": "box", "material": "red"}},
+    {"name": "eye", "camera": {}, "transform": {"position": [0, 1, 9]}}
+  ]
+})";
+
+struct EditedLevelFile {
+    test::TemporaryFolder folder;
+    std::string path = folder.file("street.level.json");
+    std::unique_ptr<Stage> stage;
+    EditScript script;
+
+    explicit EditedLevelFile(const std::string& text = kStreet) {
+        REQUIRE(write_file(path, text).ok());
+        REQUIRE(write_file(folder.file("leaf.effect.json"), R"({"prefabs": {"leaf": {}}})").ok());
+        stage = open(path);
+    }
+
+    static std::unique_ptr<Stage> open(const std::string& file) {
+        Result<std::unique_ptr<Stage>> opened = open_stage(file);
+        REQUIRE_MESSAGE(opened.ok(), (opened ? std::string() : opened.error().message));
+        return *std::move(opened);
+    }
+    World& world() { return stage->world; }
+    void run(std::string_view line) {
+        const Result<std::string> done = script.run(world(), line);
+        REQUIRE_MESSAGE(done.ok(), (done ? std::string() : done.error().message));
+    }
+    std::string error(std::string_view line) {
+        CAPTURE(line);
+        const Result<std::string> done = script.run(world(), line);
+        REQUIRE_FALSE(done.ok());
+        return done.error().message;
+    }
+    [[nodiscard]] EditedLevel save(std::span<const Edit> edits) {
+        const Result<EditedLevel> saved =
+            edited_level(path, folder.file("out.level.json"), world(), edits);
+        REQUIRE_MESSAGE(saved.ok(), (saved ? std::string() : saved.error().message));
+        return *saved;
+    }
+    [[nodiscard]] EditedLevel save() { return save(script.undo_stack().done()); }
+};
+
+Entity find(const World& world, std::string_view name) {
+    Entity found;
+    world.query<const Name>().each([&](Entity entity, const Name& one) {
+        found = one.text == name && found.is_null() ? entity : found;
+    });
+    return found;
+}
+
+/// Every root with all that is below it, and what a level can set beside.
+std::string describe(World& world) {
+    std::string all;
+    std::vector<std::string> roots;
+    world.each_entity([&](Entity entity) {
+        if (exists(world, entity) && parent_of(world, entity).is_null()) {
+            roots.push_back(entity_as_json(world, entity));
+        }
+    });
+    std::sort(roots.begin(), roots.end());
+    for (const std::string& root : roots) {
+        all += root + '\n';
+    }
+    for (const Material& material : world.resource<Assets>().materials) {
+        all += component_as_json(world, component_info<Material>(), &material) + '\n';
+    }
+    return all
+           + component_as_json(world, component_info<Exposure>(), world.find_resource<Exposure>());
+}
+
+constexpr const char* kEdits[] = {
+    "set lamp.point_light.intensity = 20",
+    "set exposure.ev = -1",
+    "set materials.red.roughness = 0.25",
+    "add post.spot_light",
+    "remove right.spot_light",
+    "set row[1].spot_light.intensity = 4",
+    "cut arm",
+    "paste other",
+    "duplicate left",
+    "set left 2.point_light.color = #ff8000",
+    "copy lamp",
+    "paste street",
+    "cut post",
+    "paste",
+    "delete box",
+};
+
+}  // namespace
+
+TEST_CASE(
+    "edit script: what is saved loads as the world that was edited"
+    * technique("engine.editor-inspector")) {
+    EditedLevelFile level;
+    const std::string before = describe(level.world());
+    std::string last;
+    for (const char* const line : kEdits) {
+        CAPTURE(line);
+        level.run(line);
+        const EditedLevel saved = level.save();
+        CHECK(saved.left_out.empty());
+        const std::string file = level.folder.file("out.level.json");
+        REQUIRE(write_file(file, saved.text).ok());
+        const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);
+        step_stage(*reopened);  // events destroy what was deleted
+        step_stage(*level.stage);
+        CHECK(describe(reopened->world) == describe(level.world()));
+        last = saved.text;
+    }
+    CHECK(last.find("\"arm\"") > last.find("\"other\""));
+    CHECK(describe(level.world()) != before);
+}
+
+TEST_CASE(
+    "edit script: undo of any edit restores the saved text"
+    * technique("engine.editor-inspector")) {
+    EditedLevelFile level;
+    std::vector<std::string> texts = {level.save().text};
+    for (const char* const line : kEdits) {
+        const std::size_t edits = level.script.undo_stack().undo_count();
+        level.run(line);
+        if (level.script.undo_stack().undo_count() > edits) {
+            texts.push_back(level.save().text);
+        }
+    }
+    REQUIRE(texts.size() > 12);
+    for (std::size_t i = texts.size() - 1; i-- > 0;) {
+        level.run("undo");
+        CHECK(level.save().text == texts[i]);
+    }
+    CHECK(level.error("undo").find("nothing to undo") != std::string::npos);
+    for (std::size_t i = 1; i < texts.size(); ++i) {
+        level.run("redo");
+        CHECK(level.save().text == texts[i]);
+    }
+}
+
+TEST_CASE("edit script: the inspector saves the same file" * technique("engine.editor-inspector")) {
+    EditedLevelFile by_script;
+    EditedLevelFile by_hand;
+    for (const char* const line :
+         {"set lamp.point_light.intensity = 20", "duplicate left", "cut arm", "paste other",
+          "delete box"}) {
+        by_script.run(line);
+    }
+    World& world = by_hand.world();
+    Inspector inspector;
+    UndoStack& undo = inspector.undo_stack();
+    const auto run = [&](const char* name, Inspector::TreeCommand command) {
+        inspector.select(find(world, name));
+        inspector.run(world, command);
+    };
+    Edit edit;  // as a widget does
+    edit.entity = find(world, "lamp");
+    edit.before = AnyComponent::of(world.value<PointLight>(edit.entity));
+    PointLight brighter = world.value<PointLight>(edit.entity);
+    brighter.intensity = 20;
+    std::string last;
+    record_edit(world, undo, edit, AnyComponent::of(brighter), "lamp: point_light.intensity", last);
+    run("left", Inspector::TreeCommand::Duplicate);
+    run("arm", Inspector::TreeCommand::Cut);
+    run("other", Inspector::TreeCommand::Paste);
+    run("box", Inspector::TreeCommand::Delete);
+    CHECK(by_hand.save(undo.done()).text == by_script.save().text);
+    CHECK(inspector.edit_count() == 5);
+    inspector.note_saved();
+    CHECK(inspector.edit_count() == 0);
+    undo.undo(world);
+    CHECK(inspector.edit_count() > 0);
+}
+
+TEST_CASE("edit script: what cannot be done is one line, and changes nothing") {
+    EditedLevelFile level;
+    const std::string before = describe(level.world());
+    CHECK(level.error("sett a.b = 1").find("did you mean set?") != std::string::npos);
+    CHECK(level.error("set lamp.point_light.intensity").find("found no =") != std::string::npos);
+    CHECK(
+        level.error("set lamp.point_light.intensity = -1").find("intensity") != std::string::npos);
+    CHECK(level.error("cut lampp").find("did you mean lamp?") != std::string::npos);
+    CHECK(level.error("cut flame").find("found 2 entities named \"flame\"") != std::string::npos);
+    CHECK(level.error("paste lamp").find("nothing was cut or copied") != std::string::npos);
+    CHECK(
+        level.error("add lamp.point_light").find("expected an entity without it")
+        != std::string::npos);
+    CHECK(
+        level.error("remove lamp.spot_light").find("expected an entity with it")
+        != std::string::npos);
+    CHECK(level.error("add lamp.spotlight").find("did you mean spot_light?") != std::string::npos);
+    CHECK(level.error("add lamp").find("expected NAME.COMPONENT") != std::string::npos);
+    CHECK(level.error("redo").find("nothing to redo") != std::string::npos);
+    level.run("copy street");
+    CHECK_FALSE(level.error("set street.transform.scale = [0, 0, 0]").empty());
+    level.run("  # a comment");
+    level.run("");
+    CHECK(describe(level.world()) == before);
+    CHECK(level.script.undo_stack().undo_count() == 0);
+}
+
+TEST_CASE("edit script: a cut parent is not pasted below its own child") {
+    EditedLevelFile level;
+    level.run("cut post");
+    const std::string before = describe(level.world());
+    CHECK_FALSE(level.error("paste lamp").empty());
+    CHECK(describe(level.world()) == before);
+}
+
+TEST_CASE("edit save: the file beside it that does not exist yet") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("a.level.json");
+    CHECK(new_edited_path(path) == folder.file("a-edited.level.json"));
+    REQUIRE(write_file(folder.file("a-edited.level.json"), "{}").ok());
+    CHECK(new_edited_path(path) == folder.file("a-edited-2.level.json"));
+    CHECK(
+        new_edited_path(folder.file("a-edited.level.json"))
+        == folder.file("a-edited-2.level.json"));
+    REQUIRE(write_file(folder.file("a-edited-2.level.json"), "{}").ok());
+    CHECK(
+        new_edited_path(folder.file("a-edited-2.level.json"))
+        == folder.file("a-edited-3.level.json"));
+    CHECK(
+        new_edited_path(folder.file("un-edited-one.level.json"))
+        == folder.file("un-edited-one-edited.level.json"));
+}
+
+TEST_CASE("edit save: a level with files stays in its folder; a model is no level") {
+    EditedLevelFile level(
+        R"({"include": ["leaf.effect.json"], "entities": [{"name": "a", "prefab": "leaf"}]})");
+    level.run("set exposure.ev = 2");
+    const auto save = [&](const std::string& path, const std::string& out) {
+        const Result<EditedLevel> saved =
+            edited_level(path, out, level.world(), level.script.undo_stack().done());
+        return saved ? saved->text : saved.error().message;
+    };
+    CHECK(
+        save(level.path, level.folder.file("b.level.json")).find("\"ev\": 2") != std::string::npos);
+    const test::TemporaryFolder other;
+    CHECK(
+        save(level.path, other.file("b.level.json")).find("refers to \"leaf.effect.json\"")
+        != std::string::npos);
+    CHECK(
+        save("fox.glb", other.file("b.level.json")).find("expected a level") != std::string::npos);
+}
+
+TEST_CASE("edit save: what a level cannot say is named") {
+    EditedLevelFile level;
+    World& world = level.world();
+    // Copies by repeat are no entities of the file.
+    Edit edit;
+    edit.entity = find(world, "row[0]");
+    edit.label = "row[0]: move";
+    edit.after = AnyComponent::of(Parent{find(world, "other")});
+    UndoStack undo;
+    apply_edit_value(world, edit, edit.after);
+    undo.record(edit);
+    world.resource<Assets>().materials.emplace_back().name = "of a file";
+    Edit material;
+    material.part = LevelPart::Material;
+    material.material = static_cast<std::uint32_t>(world.resource<Assets>().materials.size() - 1);
+    material.before = AnyComponent::of(world.resource<Assets>().materials.back());
+    Material rough = world.resource<Assets>().materials.back();
+    rough.roughness = 0.9f;
+    material.after = AnyComponent::of(rough);
+    apply_edit_value(world, material, material.after);
+    undo.record(material);
+    Edit removal;
+    removal.entity = find(world, "row[1]");
+    removal.before = AnyComponent::read(world, removal.entity, component_info<SpotLight>());
+    apply_edit_value(world, removal, {});
+    undo.record(removal);
+    const EditedLevel saved = level.save(undo.done());
+    REQUIRE(saved.left_out.size() == 3);
+    CHECK(saved.left_out[0].find("removed from \"row[1]\"") != std::string::npos);
+    CHECK(saved.left_out[1].find("the move of \"row[0]\"") != std::string::npos);
+    CHECK(saved.left_out[2].find("the material \"of a file\"") != std::string::npos);
+}
+
+}  // namespace limn::edit_script_test
