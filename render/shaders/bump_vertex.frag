@@ -53,5 +53,5 @@ void main() {
         light[0] += arriving * albedo * of_one.y;
         light[1] += arriving * shine.rgb * of_one.z;
     }
-    radiance = vec4(storable(light[0] * base_color_texel().rgb + light[1] + surface_emission()), 1.0);
+    radiance = vec4(storable(light[0] * color_over_light() + light[1] + surface_emission()), 1.0);
 }

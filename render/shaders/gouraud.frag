@@ -11,5 +11,5 @@ layout(location = 1) INTERPOLATED in vec3 specular;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    radiance = vec4(storable(diffuse * base_color_texel().rgb + specular + surface_emission()), 1.0);
+    radiance = vec4(storable(diffuse * color_over_light() + specular + surface_emission()), 1.0);
 }

@@ -12,9 +12,11 @@ void prepare_subsurface(inout Reflector r, SurfaceSample s) {
     vec4 specular = block_texel(s.material, kSubsurfaceBlock, 0);
     vec4 diffusion = block_texel(s.material, kSubsurfaceBlock, kDiffusionTexel);
     float gloss = max(diffusion.w, kMinRoughness);
+    // Where less than a quarter of the surroundings is open, as in a nostril, lamps are hidden as well.
+    float open = min(4.0 * s.occlusion, 1.0);
     vec2 fit = mix(lobe_albedo(r.n_v, s.roughness), lobe_albedo(r.n_v, diffusion.w), specular.w);
-    r.specular_0 = specular.rgb;
-    r.specular_90 = vec3(1.0);
+    r.specular_0 = specular.rgb * open;
+    r.specular_90 = vec3(open);
     r.mirror = specular.rgb * fit.x + fit.y;
     r.diffuse = s.albedo * (1.0 - r.mirror);
 #ifdef SHADE_SUBSURFACE

@@ -175,5 +175,46 @@ TEST_CASE("body part: fingers taper, and each has a nail that lies on its skin")
     CHECK(width(0.09f, 0.096f) < 0.85f * width(0.04f, 0.046f));
 }
 
+TEST_CASE("body part: each toe has a nail on its back, and that of the big toe is the widest") {
+    const MeshData foot =
+        make_body_part({.part = BodyPartKind::Foot, .length = 0.27f, .cells = 96});
+    const MeshData nails = make_body_part({.part = BodyPartKind::FootNails, .length = 0.27f});
+    const std::size_t per_nail = nails.positions.size() / 5;
+    CHECK(per_nail * 5 == nails.positions.size());
+    std::array<float, 5> widths{};
+    for (std::size_t i = 0; i < nails.positions.size(); ++i) {
+        float nearest = 1;
+        for (const Vec3& p : foot.positions) {
+            nearest = std::min(nearest, glm::distance(p, nails.positions[i]));
+        }
+        CHECK(nearest < 0.004f);
+        CHECK(nails.positions[i].y > 0.03f);  // the toes are the end that points up
+    }
+    for (std::size_t n = 0; n < 5; ++n) {
+        Vec2 range = {1, -1};
+        for (std::size_t i = n * per_nail; i < (n + 1) * per_nail; ++i) {
+            range = {
+                std::min(range.x, nails.positions[i].x), std::max(range.y, nails.positions[i].x)};
+        }
+        widths[n] = range.y - range.x;
+        CHECK((n == 0 || widths[n] < 0.8f * widths[0]));
+    }
+    CHECK(widths[0] > 0.012f);
+    CHECK(widths[0] < 0.024f);
+}
+
+TEST_CASE("body part: the bend of the elbow is a shallow hollow, without walls that face aside") {
+    const MeshData arm = make_body_part({.part = BodyPartKind::Arm, .length = 0.34f, .cells = 64});
+    float steepest = 1;  // cosine to the front, of its middle
+    for (std::size_t v = 0; v < arm.positions.size(); ++v) {
+        const Vec3& p = arm.positions[v];
+        const float along = p.y / 0.34f;
+        if (along > -0.4f && along < -0.15f && std::abs(p.x) < 0.02f && p.z > 0) {
+            steepest = std::min(steepest, arm.normals[v].z);
+        }
+    }
+    CHECK(steepest > 0.75f);
+}
+
 }  // namespace
 }  // namespace limn::body_part_test

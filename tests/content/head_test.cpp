@@ -413,6 +413,39 @@ TEST_CASE("head: little light is left in nostrils, and behind the tip of the nos
     }
 }
 
+TEST_CASE("head: nostrils and what lies behind the lips are cavities, and no other skin is") {
+    for (const HeadVertex& vertex : head_layout().vertices) {
+        const float relief = head_skin_relief(vertex, wrapped()[0]);
+        const bool nostril = vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim;
+        const bool mouth = vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop + 1;
+        CHECK((relief < kSkinCavity) == (nostril || mouth));
+        if (nostril && vertex.loop >= kNostrilRim + 3) {
+            CHECK(relief == 0);
+        }
+    }
+}
+
+TEST_CASE("head: teeth are a warm white, darker and redder toward the molars and the roots") {
+    const HeadPart teeth = make_teeth();
+    const auto luminance = [](const Vec4& c) {
+        return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+    };
+    float front = 0;
+    float back = 1;
+    for (std::size_t v = 0; v < teeth.mesh.positions.size(); ++v) {
+        const Vec4& color = teeth.mesh.colors[v];
+        CHECK(color.x >= color.y);
+        CHECK(color.y > color.z);
+        CHECK(color.w <= kSkinCavity);
+        const float z = teeth.mesh.positions[v].z;
+        front = z > 10 ? std::max(front, luminance(color)) : front;
+        back = z < 7 ? std::min(back, luminance(color)) : back;
+        CHECK((z > 7 || color.z < 0.72f * color.x));
+    }
+    CHECK(front > 0.9f);
+    CHECK(back < 0.4f);
+}
+
 TEST_CASE("head: hair grows on the scalp alone, its cards lie outside of the skull, roots first") {
     CHECK(scalp_hair_cover({0, 14, 0}) == 1);
     CHECK(scalp_hair_cover({0, 7, 10}) == 0);  // forehead, cheek, neck

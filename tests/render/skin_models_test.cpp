@@ -324,4 +324,37 @@ TEST_CASE("detail: its slopes add to those of the normal map" * technique("skin.
     CHECK(glm::distance(half, glm::normalize(Vec3(0.25f, 0.5f / 3, 1))) < 0.01f);
 }
 
+TEST_CASE(
+    "skin: a cavity is lit by its share of the surroundings, and a deep one mirrors no lamp") {
+    // The alpha of vertex colors, 0.1 or more where skin is open.
+    const auto seen = [](float alpha, const Vec3& base_color, bool lamp) {
+        Scene scene;
+        MeshData mesh = make_square();
+        mesh.colors.assign(4, Vec4(1, 1, 1, alpha));
+        const Material material = {
+            .shading = ShadingModel::Subsurface,
+            .base_color = Vec4(base_color, 1),
+            .roughness = 0.5f,
+            .specular = Vec3(0.05f)};
+        scene.place(scene.add(mesh), scene.add(material), at({0, 0, 0}));
+        if (lamp) {
+            scene.shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0, 0, -1}));
+        } else {
+            scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
+        }
+        return rgb_at(scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17)), 8, 8).x;
+    };
+    const float open = seen(1, Vec3(0), true);
+    CHECK(open > 0.05f);
+    CHECK(double(seen(0.1f, Vec3(0), true)) == near(double(open)).epsilon(0.01));
+    CHECK(
+        double(seen(0.04f, Vec3(0), true)) == near(double(open)).epsilon(0.01));  // lamps reach it
+    CHECK(double(seen(0.0125f, Vec3(0), true)) == near(0.5 * double(open)).epsilon(0.03));
+    CHECK(seen(0, Vec3(0), true) == 0);
+    const float around = seen(1, Vec3(0.8f), false);
+    CHECK(double(seen(0.1f, Vec3(0.8f), false)) == near(double(around)).epsilon(0.01));
+    CHECK(seen(0.05f, Vec3(0.8f), false) < 0.52f * around);
+    CHECK(seen(0, Vec3(0.8f), false) < 1e-3f * around);
+}
+
 }  // namespace limn::test::skin_models_test

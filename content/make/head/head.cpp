@@ -327,12 +327,19 @@ float head_skin_relief(const HeadVertex& vertex, const Vec3& point) {
     };
     constexpr float kElsewhere = 0.3f;
     constexpr std::array<Spot, 5> kSpots = {{
-        {{0, 0.6f, 12}, 2.0f, 1},           // nose
+        {{0, 0.6f, 12}, 2.0f, 1.15f},       // nose
         {{2.6f, 0.4f, 9.8f}, 2.0f, 0.8f},   // cheek beside it
         {{0, -6.2f, 10.4f}, 1.9f, 0.7f},    // chin
         {{0, 7.4f, 10.2f}, 3.6f, 0.6f},     // forehead
         {{4.6f, -1.6f, 8.2f}, 2.4f, 0.5f},  // cheek below its bone
     }};
+    if (vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim) {
+        constexpr std::array<float, 4> kOpen = {0.6f, 0.15f, 0.03f, 0};
+        return kSkinCavity * kOpen[std::min(vertex.loop - kNostrilRim, 3)];
+    }
+    if (vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop + 1) {
+        return kSkinCavity * 0.15f;
+    }
     if (vertex.loops == HeadLoops::Eye && vertex.loop >= kLidCreaseLoop - 2) {
         return 0.15f;  // thin skin without pores
     }

@@ -77,11 +77,19 @@ float rounded(float x, float power) {
     return std::copysign(std::pow(std::abs(x), power), x);
 }
 
-void append(HeadPart& part, const HeadPoint& point, const Vec3& color, const Vec2& uv) {
+void append(
+    HeadPart& part, const HeadPoint& point, const Vec3& color, const Vec2& uv, float alpha = 1) {
     part.mesh.positions.push_back(point.rest);
-    part.mesh.colors.emplace_back(color, 1.0f);
+    part.mesh.colors.emplace_back(color, alpha);
     part.mesh.uvs.push_back(uv);
     part.points.push_back(point);
+}
+
+/// Share of the surroundings that a point of a tooth sees in an open mouth: the front teeth most,
+/// at their edges; cheeks hide the molars, lips the roots.
+float tooth_opening(const Jaw& jaw, const Vec3& p, float root) {
+    const float back = glm::smoothstep(0.3f, 3.2f, jaw.front - p.z);
+    return glm::mix(0.95f, 0.08f, back) * glm::mix(1.0f, 0.55f, glm::smoothstep(0.3f, 1.0f, root));
 }
 
 /// A box with rounded edges, narrower and thicker at its root.
@@ -108,9 +116,13 @@ void append_tooth(HeadPart& part, const Jaw& jaw, const Tooth& tooth, float alon
             p.y = jaw.edge + jaw.side * tooth.height * root;
             p.x *= side;
             const Vec3 tint = glm::mix(kEnamel, kEnamel * Vec3(0.92f, 0.84f, 0.68f), root);
+            const float open = tooth_opening(jaw, p, root);
+            // What lights a tooth from behind lips and cheeks is red.
+            const Vec3 light = {1, glm::mix(0.8f, 1.0f, open), glm::mix(0.72f, 1.0f, open)};
             append(
-                part, bone_point(p, jaw.bound), tint,
-                {static_cast<float>(i) / kAround, static_cast<float>(row) / kRows});
+                part, bone_point(p, jaw.bound), tint * light * glm::mix(0.35f, 1.0f, open),
+                {static_cast<float>(i) / kAround, static_cast<float>(row) / kRows},
+                kSkinCavity * open);
         }
     }
     append_grid(part.mesh, kRows, kAround, true, side * jaw.side < 0);

@@ -19,8 +19,12 @@ struct HeadPart {
 [[nodiscard]] Vec3
 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape);
 
+/// Below it the alpha of a color is not relief: times this, the share of the surroundings that
+/// light a cavity of skin, or a tooth (lib/material.glsl).
+inline constexpr float kSkinCavity = 0.1f;
+
 /// How deep pores are there, 1 on the nose, where they are deepest: the alpha of the skin's colors,
-/// which scales the material's detail_texture.
+/// which scales the material's detail_texture. In nostrils and mouth: how open they are.
 [[nodiscard]] float head_skin_relief(const HeadVertex& vertex, const Vec3& point);
 
 /// Both eyeballs, of radius kBallRadius, with an iris as deep behind the cornea as in a real eye,

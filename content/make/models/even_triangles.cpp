@@ -92,7 +92,7 @@ void flip_edges(ImplicitMesh& mesh) {
         const Vec3 normal = area_vector(mesh, a, b, c) + area_vector(mesh, b, a, d);
         const bool folds = glm::dot(area_vector(mesh, c, a, d), normal) <= 0
                            || glm::dot(area_vector(mesh, d, b, c), normal) <= 0;
-        constexpr float kSliver = 0.4f;  // its shape counts more than the number of neighbors
+        constexpr float kSliver = 0.5f;  // its shape counts more than the number of neighbors
         const bool better =
             std::min(then, now) < kSliver ? then > now : then > 0.8f * now && gain > 0;
         if (folds || !better) {
@@ -243,8 +243,11 @@ void even_triangles(ImplicitMesh& mesh, const SignedDistance& distance, float ce
         flip_edges(mesh);
         relax_on_surface(mesh, distance, cell, 2);
     }
-    collapse_edges(mesh, shortest);
-    flip_edges(mesh);
+    for (int i = 0; i < 3; ++i) {  // a vertex takes part in one change at once
+        flip_edges(mesh);
+        collapse_edges(mesh, shortest);
+        relax_on_surface(mesh, distance, cell, 1);
+    }
     compact(mesh);
     mesh.normals.resize(mesh.positions.size());
     parallel_for(mesh.positions.size(), 256, [&](std::size_t begin, std::size_t end) {

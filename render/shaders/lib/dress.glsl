@@ -1,6 +1,6 @@
 // Colors and patterns of a dressed person (material_dress_gpu.h). Patterns are averaged over the footprint of the pixel,
-// an axis at a time, so that they fade into their mean where they are small. Lighting at vertices or facets
-// (rendering.shading) leaves the mesh its own colors.
+// an axis at a time, so that they fade into their mean where they are small. Light of vertices or facets
+// (rendering.shading) is colored per pixel, too.
 // Techniques: engine.multi-material
 
 #include "material_dress_gpu.h"

@@ -20,6 +20,6 @@ float[6] quadratic_basis(vec2 at) {
 // Columns: diffuse light, still to be multiplied by the base color map, and specular light. A polynomial may
 // undershoot, so negative light is clamped.
 vec4 facet_radiance(mat2x3 light) {
-    vec3 reflected = max(light[0] * base_color_texel().rgb + light[1], 0.0);
+    vec3 reflected = max(light[0] * color_over_light() + light[1], 0.0);
     return vec4(storable(reflected + surface_emission()), 1.0);
 }

@@ -26,5 +26,5 @@ vec3 map_texel(vec2 at, float layer) {
 
 // `tinted`: still to be multiplied by the base color map.
 vec4 map_radiance(vec3 tinted, vec3 highlights) {
-    return vec4(storable(tinted * base_color_texel().rgb + highlights + surface_emission()), 1.0);
+    return vec4(storable(tinted * color_over_light() + highlights + surface_emission()), 1.0);
 }

@@ -109,6 +109,15 @@ vec4 base_color_texel() {
 #define FINE_NORMALS
 #endif
 
+// What diffuse light that was found at vertices or facets is multiplied by: colors finer than they are.
+vec3 color_over_light() {
+    vec3 color = base_color_texel().rgb;
+#if defined(DRESSED) && defined(VERTEX_COLOR)
+    color *= dress_factor(material_and_flags.x, vertex_color.a, uv.xy);
+#endif
+    return color;
+}
+
 vec4 surface_color() {
     hook_uv(map_uv);
     vec4 color = material_texel(0) * base_color_texel();
@@ -335,6 +344,15 @@ void shadow_bumps(inout SurfaceSample s) {
 }
 #endif
 
+#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
+// How open a cavity of skin is, from the alpha of its vertices: below kCavityAlpha, where there are no pores, it is the
+// share of the surroundings that light the surface.
+float skin_cavity(float alpha) {
+    const float kCavityAlpha = 0.1;
+    return clamp(alpha / kCavityAlpha, 0.0, 1.0);
+}
+#endif
+
 SurfaceSample surface_sample(vec3 albedo) {
     vec4 factors = material_texel(2);
     SurfaceSample s;
@@ -366,6 +384,9 @@ SurfaceSample surface_sample(vec3 albedo) {
     vec3 spread = normal_spread(material_texel(1).w);
 #if defined(NORMAL_SPREAD_MAP) && !defined(LEAN_NORMALS)
     s.roughness = has_strands(s.model) ? s.roughness : rougher(s.roughness, 0.5 * (spread.x + spread.y));
+#endif
+#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
+    s.occlusion *= s.model == kModelSubsurface ? skin_cavity(vertex_color.a) : 1.0;
 #endif
     set_plain(s);
 #ifdef STRANDS
