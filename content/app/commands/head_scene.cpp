@@ -29,7 +29,7 @@ struct PartLook {
 constexpr std::array kLooks{
     PartLook{"skin", false, {0.55f, 0.34f, 0.26f}, 0.5f},
     PartLook{"eyes", false, {1, 1, 1}, 0.15f},
-    PartLook{"teeth", false, {0.8f, 0.67f, 0.5f}, 0.25f},
+    PartLook{"teeth", false, {0.95f, 0.8f, 0.68f}, 0.25f},
     PartLook{"mouth", false, {0.5f, 0.3f, 0.28f}, 0.35f},
     PartLook{"hair", true, {0.03f, 0.02f, 0.014f}, 0.55f},
     PartLook{"scalp", true, {0.05f, 0.035f, 0.025f}, 0.7f},
