@@ -63,7 +63,7 @@ DeformSource find_deform_source(
         source.fault = fmt::format(
             "deformed mesh {}: skin {} uses joint {}, but its character's pose has {}", name,
             skin.name, *beyond, joints);
-        return source;
+        source.wanted_joints = *std::ranges::max_element(used) + std::size_t{1};
     }
     source.skin = joint_count > 0 ? &skin : nullptr;
     return source;

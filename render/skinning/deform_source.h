@@ -18,7 +18,8 @@ struct DeformSource {
     const MorphWeights* morphs = nullptr;  ///< null: no morph targets
     const DeformerState* deformers = nullptr;      ///< of the mesh itself; null: none
     const SurfaceBindingState* surface = nullptr;  ///< likewise, if it follows patches
-    std::string fault;  ///< why it is drawn in rest pose; empty if it is deformed
+    std::string fault;              ///< why it is drawn in rest pose; empty if it is deformed
+    std::size_t wanted_joints = 0;  ///< how many the pose should have, if it has fewer; else 0
 };
 
 /// Finds the inputs of `entity`, an instance of `mesh`. `joint_count`: number of joints that the

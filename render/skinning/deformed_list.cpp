@@ -176,6 +176,13 @@ bool DeformedList::resolve(
     }
     DeformSource source = find_deform_source(
         world, assets, entry.entity, entry.mesh, entry.rest->joint_count, entry.settings);
+    if (finest && source.wanted_joints > 0 && source.pose != nullptr) {
+        // The pose is that of the coarser mesh in use. What is compiled does not depend on it.
+        Pose& whole = whole_poses_.emplace_back(*source.pose);
+        whole.joints.resize(source.wanted_joints);
+        source.pose = &whole;
+        source.fault.clear();
+    }
     entry.skin = source.skin;
     entry.pose = source.pose;
     entry.morphs = source.morphs;
@@ -312,6 +319,7 @@ void DeformedList::update(
     alpha_ = alpha;
     previous_alpha_ = previous_alpha;
     active_.clear();
+    whole_poses_.clear();
     for (Entry& entry : entries_) {
         entry.found = false;
         entry.active = false;

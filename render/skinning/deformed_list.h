@@ -12,6 +12,7 @@
 #include "render/skinning/rest_pool.h"
 
 #include <compare>
+#include <deque>
 #include <set>
 #include <span>
 #include <string>
@@ -179,6 +180,7 @@ class DeformedList {
     const MeshPool* meshes_ = nullptr;
     RestPool rest_;
     DeformedVertices vertices_;
+    std::deque<Pose> whole_poses_;  ///< of characters whose finest mesh needs more joints
     std::set<std::string> reported_;
     // Scratch of write_jobs().
     DeformWork work_;

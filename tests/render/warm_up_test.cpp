@@ -1,3 +1,7 @@
+// clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
+#include "tests/render/skin_fixture.h"
+// clang-format on
+#include "ecs/components/mesh_levels.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/time.h"
@@ -7,6 +11,7 @@
 #include "render/image.h"
 #include "render/light/light_list.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/support.h"
 
 #include <doctest/doctest.h>
 
@@ -128,6 +133,27 @@ TEST_CASE_FIXTURE(Scene, "warm-up: an effect adds views, and is reset afterwards
     CHECK(SideViewEffect::draws == 0);
     render_frame(*renderer, world, view);
     CHECK(SideViewEffect::draws == 1);
+}
+
+TEST_CASE_FIXTURE(
+    SkinScene, "warm-up: characters far away are drawn near, whose poses have too few joints") {
+    const auto tube = [&](int joints) {
+        Random random(7, 0, 0, 0);
+        MeshData mesh = make_tube(4 * joints, 8, 0.25f * static_cast<float>(joints - 1));
+        add_weights(mesh, joints, 4, random);
+        return add(std::move(mesh));
+    };
+    const MeshId far = tube(2);
+    const MeshId near = tube(5);
+    const Pose few = {.joints = {Affine{}, Affine{}}, .previous = {Affine{}, Affine{}}};
+    const Entity who = pose(far, add(Material{}), add_skin(make_chain(5, 0.25f)), few);
+    world.add(who, MeshLevels{.meshes = {far, near}});
+    const RendererPtr renderer = *create_renderer(shared_device());
+    const RenderView view = look({0, 0, 3}, {0, 0, 0});
+    CHECK(messages_of([&] { warm_up(*renderer, world, view); }).empty());
+    CHECK(messages_of([&] { render_frame(*renderer, world, view); }).empty());
+    world.get<MeshInstance>(who).mesh = near;  // now its pose is really too short
+    CHECK(messages_of([&] { render_frame(*renderer, world, view); }).size() == 1);
 }
 
 TEST_CASE("warm-up: a light that is momentarily black by its pulse stays in the list") {
