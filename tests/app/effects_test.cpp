@@ -40,9 +40,11 @@ std::vector<EffectFile> effect_files() {
         const Result<JsonValue> json = load_json(entry.path().string());
         REQUIRE_MESSAGE(json.ok(), (json.ok() ? "" : json.error().message));
         CHECK(json->find("title") != nullptr);
-        EffectFile& file = files.emplace_back(EffectFile{name, {}});
         const JsonValue* const prefabs = json->find("prefabs");
-        REQUIRE(prefabs != nullptr);
+        if (prefabs == nullptr) {
+            continue;  // only materials and meshes
+        }
+        EffectFile& file = files.emplace_back(EffectFile{name, {}});
         for (const JsonMember& member : prefabs->members) {
             file.prefabs.push_back(member.key);
         }
