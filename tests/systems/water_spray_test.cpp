@@ -2,6 +2,7 @@
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water_ripples.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/water_dispersion.h"
@@ -86,6 +87,7 @@ TEST_CASE(
         REQUIRE(drops.size() > 3000);
         const Vec3 along = {std::cos(0.7f), 0, std::sin(0.7f)};
         float mean = 0;
+        float square = 0;  // of speeds, in the mean
         float least = 100;
         float greatest = 0;
         for (const SprayDrop& drop : drops) {
@@ -96,10 +98,12 @@ TEST_CASE(
                 CHECK(glm::dot(drop.velocity / speed, along) > std::cos(0.3f) - 1e-4f);
             }
             mean += speed / static_cast<float>(drops.size());
+            square += speed * speed / static_cast<float>(drops.size());
             least = std::min(least, drop.position.y);
             greatest = std::max(greatest, drop.position.y);
         }
         CHECK(std::abs(mean / orbital_speed(sea.line()) - 1) < 0.02f);
+        CHECK(std::sqrt(square - mean * mean) / mean == test::near(0.2).epsilon(0.1));  // `spread`
         CHECK(greatest - least > 0.02f * wave.amplitude);
     }
 }
@@ -163,6 +167,11 @@ TEST_CASE(
     }
     ocean.made_for.foam_threshold = 0.5f;  // it is pressed together as far, and no farther
     CHECK(spray().empty());
+    // Sheared by as much in both directions: J is 1 - 0.5^2.
+    ocean.made_for.foam_threshold = 0.9f;
+    cascade.shift_xx = flat;
+    cascade.shift_xz.assign(flat.size(), 0.5f);
+    CHECK(static_cast<double>(spray().size()) == test::near(6400 * 0.15).epsilon(0.1).scale(0));
 }
 
 TEST_CASE(
@@ -334,6 +343,34 @@ TEST_CASE(
         CHECK(drop.position.z > 0);  // at the bow
         CHECK(drop.velocity.y > 0);
     }
+    // Aslant, wherever it throws them: none into the hull.
+    drops.clear();
+    hull.is_box = true;
+    hull.before = affine_from({-2.5f / 60, 0, -2.5f / 60}, Quat(1, 0, 0, 0), Vec3(1));
+    for (int i = 0; i < 60; ++i) {
+        spray_body(still, {.rate = 2000, .angle = 1.4f}, hull, 0, 1.0f / 60, random, drops);
+    }
+    std::size_t at_side = 0;
+    for (const SprayDrop& drop : drops) {
+        const bool is_side = drop.position.x > 0.5999f;
+        CHECK((is_side ? drop.velocity.x : drop.velocity.z) >= -1e-5f);
+        at_side += is_side ? 1 : 0;
+    }
+    // As many more as that side is longer.
+    CHECK(drops.size() > 200);
+    CHECK(
+        static_cast<double>(at_side) / static_cast<double>(drops.size())
+        == test::near(2 / 2.6).epsilon(0.1));
+    drops.clear();
+    hull.is_box = false;
+    for (int i = 0; i < 60; ++i) {
+        spray_body(still, {.rate = 2000, .angle = 1.4f}, hull, 0, 1.0f / 60, random, drops);
+    }
+    CHECK(drops.size() > 100);
+    for (const SprayDrop& drop : drops) {
+        const Vec3 outward = drop.position / (hull.half * hull.half);
+        CHECK(glm::dot(glm::normalize(Vec3(outward.x, 0, outward.z)), drop.velocity) >= -1e-5f);
+    }
 }
 
 TEST_CASE(
@@ -394,6 +431,57 @@ TEST_CASE("water spray: drops leave a moving body where it is in this step") {
     CHECK(thrown > 100);
 }
 
+TEST_CASE("water spray: what runs through still water throws as much in one part as in several") {
+    World world;
+    Schedule schedule = make_world_schedule(add_moving_obstacles);
+    world.create(Transform{}, Water{});
+    const Vec3 half(0.5f);
+    const SprayObstacle obstacle = {.rate = 3000};
+    const Entity whole = world.create(Transform{}, obstacle, WaterTouch{.half = half});
+    const TouchParts parts = {.parts = std::vector<TouchPart>(4, {.half = half})};
+    const Entity several = world.create(
+        Transform{.position = {0, 0, 40}}, obstacle, WaterTouch{.shape = TouchShape::Mesh}, parts);
+    start_world(world, add_moving_obstacles);
+    std::size_t thrown[2] = {0, 0};
+    for (int i = 0; i < 60; ++i) {
+        step_world(world, schedule);
+        thrown[0] += world.get<SprayDrops>(whole).drops.size();
+        thrown[1] += world.get<SprayDrops>(several).drops.size();
+    }
+    CHECK(thrown[0] > 200);
+    CHECK(
+        static_cast<double>(thrown[1])
+        == test::near(static_cast<double>(thrown[0])).epsilon(0.15).scale(0));
+}
+
+TEST_CASE("water spray: a bowl, which has no outside, is hit at its point") {
+    World world;
+    Schedule schedule = make_world_schedule();
+    world.create(Transform{}, Water{}, WaterWaves{.waves = {wave_of(0.2f)}});
+    const SprayObstacle obstacle = {.normal = {-1, 0, -1}, .rate = 4000};
+    const auto collider = [](bool hollow) {
+        return ParticleCollider{
+            .shape = ColliderShape::Sphere, .size = {2, 0, 0}, .hollow = hollow};
+    };
+    const Entity bowl = world.create(Transform{}, obstacle, collider(true));
+    const Entity ball = world.create(Transform{}, obstacle, collider(false));
+    start_world(world);
+    std::size_t thrown[2] = {0, 0};
+    for (int i = 0; i < 120; ++i) {
+        step_world(world, schedule);
+        for (const SprayDrop& drop : world.get<SprayDrops>(bowl).drops) {
+            CHECK(std::hypot(drop.position.x, drop.position.z) < 1e-4f);
+            ++thrown[0];
+        }
+        for (const SprayDrop& drop : world.get<SprayDrops>(ball).drops) {
+            CHECK(std::hypot(drop.position.x, drop.position.z) > 1.5f);
+            ++thrown[1];
+        }
+    }
+    CHECK(thrown[0] > 100);
+    CHECK(thrown[1] > 100);
+}
+
 TEST_CASE("water spray: a world refills its drops each step" * technique("water.crest-spray")) {
     World world;
     Schedule schedule = make_world_schedule();
@@ -402,6 +490,8 @@ TEST_CASE("water spray: a world refills its drops each step" * technique("water.
         SpraySource{.rate = 600});
     const Entity wall = world.create(
         Transform{.position = {0, 5, 0}}, SprayObstacle{.normal = {-1, 0, -1}, .rate = 6000});
+    const Entity high = world.create(
+        Transform{.position = {0, 9, 0}}, SprayObstacle{.normal = {-1, 0, -1}, .rate = 6000});
     start_world(world);
     std::size_t of_wall = 0;
     for (int i = 0; i < 200; ++i) {
@@ -410,6 +500,7 @@ TEST_CASE("water spray: a world refills its drops each step" * technique("water.
         CHECK(drops <= 11);
         CHECK(drops + 6 >= 10);
         of_wall += world.get<SprayDrops>(wall).drops.size();
+        CHECK(world.get<SprayDrops>(high).drops.empty());
     }
     // The mean of cos^4 is 3/8, over half of the time: of 6000 / 60 per step.
     CHECK(std::abs(static_cast<float>(of_wall) / (200 * 100) - 3.0f / 16) < 0.06f);
