@@ -97,6 +97,37 @@ TEST_CASE("scene warnings: components that have no effect without another") {
             "entity \"hen\": motion_style has no effect without motion_graph"});
 }
 
+TEST_CASE("scene warnings: what meets water, where there is none, or none with waves") {
+    const auto with = [](const char* water) {
+        return warnings_of(
+            R"({"entities": [{"name": "rock", "transform": {}, "water_wall": {}, "wake_emitter": {}},
+                {"name": "mole", "transform": {}, "particle_look": {}, "particle_emitter": {},
+                 "spray_obstacle": {}})"
+            + std::string(water) + "]}");
+    };
+    CHECK(
+        with("")
+        == Warnings{
+            "entity \"mole\": spray_obstacle has no effect without a water",
+            "entity \"rock\": water_wall has no effect without a water",
+            "entity \"rock\": wake_emitter has no effect without a water with water_waves"});
+    CHECK(
+        with(R"(, {"name": "pond", "transform": {}, "water": {}})")
+        == Warnings{
+            "entity \"rock\": wake_emitter has no effect without a water with water_waves"});
+    CHECK(
+        with(R"(, {"name": "pond", "transform": {}, "water": {}, "water_waves": {}})")
+        == Warnings{});
+    CHECK(
+        warnings_of(
+            R"({"entities": [{"name": "sea", "transform": {}, "water": {}, "spray_source": {}},
+            {"name": "buoy", "transform": {}, "floating": {}}]})")
+        == Warnings{
+            "entity \"sea\": spray_source has no effect without water_waves or ocean and "
+            "particle_emitter",
+            "entity \"buoy\": floating has no effect without water_touch"});
+}
+
 TEST_CASE("scene warnings: surfaces that are missing, or that emit nothing") {
     CHECK(
         warnings_of(R"({"entities": [

@@ -1,6 +1,8 @@
 #include "content/load/level/particle_warnings.h"
 
 #include "ecs/archetype.h"
+#include "ecs/components/caustics.h"
+#include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/height_image.h"
 #include "ecs/components/ocean.h"
@@ -13,7 +15,11 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_detail.h"
+#include "ecs/components/water_look.h"
 #include "ecs/components/water_noise.h"
+#include "ecs/components/water_ripples.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/field_access.h"
 #include "ecs/field_watch.h"
 #include "ecs/hierarchy.h"
@@ -316,6 +322,77 @@ bool has_no_fetch(const World& world, Entity entity) {
     return spectrum != OceanSpectrum::Jonswap && spectrum != OceanSpectrum::Tma;
 }
 
+const WaterLook& water_look_of(const World& world, Entity entity) {
+    return component_or_default<WaterLook>(world, entity);
+}
+bool is_not_planar(const World& world, Entity entity) {
+    return water_look_of(world, entity).reflection != WaterReflection::Planar;
+}
+bool has_no_distortion(const World& world, Entity entity) {
+    return is_not_planar(world, entity)
+           && water_look_of(world, entity).refraction != WaterRefraction::Shifted;
+}
+bool shows_no_floor(const World& world, Entity entity) {
+    return water_look_of(world, entity).refraction != WaterRefraction::Floor;
+}
+bool has_no_floor(const World& world, Entity entity) {
+    return !shows_no_floor(world, entity)
+           && !(component_or_default<Water>(world, entity).depth > 0);
+}
+bool reflects_no_map(const World& world, Entity entity) {
+    return water_look_of(world, entity).reflection != WaterReflection::Map;
+}
+bool has_no_crests(const World& world, Entity entity) {
+    const WaterWaves& waves = component_or_default<WaterWaves>(world, entity);
+    return waves.waves.empty() && waves.groups.empty();
+}
+bool never_breaks(const World& world, Entity entity) {
+    return has_no_crests(world, entity) && !has_component(world, entity, "ocean");
+}
+bool has_no_whitecaps(const World& world, Entity entity) {
+    return !(water_look_of(world, entity).foam_below > -1);
+}
+bool has_no_layers(const World& world, Entity entity) {
+    return component_or_default<WaterDetail>(world, entity).layers.empty();
+}
+bool has_no_normal_map(const World& world, Entity entity) {
+    return component_or_default<WaterDetail>(world, entity).normal_map.index == kNoAsset;
+}
+bool is_not_split(const World& world, Entity entity) {
+    return !(component_or_default<WaterDetail>(world, entity).split > 0);
+}
+bool touches_by_mesh(const World& world, Entity entity) {
+    return component_or_default<WaterTouch>(world, entity).shape == TouchShape::Mesh;
+}
+bool has_no_mirrored_light(const World& world, Entity entity) {
+    return !(component_or_default<Caustics>(world, entity).mirror_reach > 0);
+}
+bool is_spray_body(const World& world, Entity entity) {
+    const auto* const collider = world.find<ParticleCollider>(entity);
+    return world.has<WaterTouch>(entity)
+           || (collider != nullptr
+               && (collider->shape == ColliderShape::Box
+                   || (collider->shape == ColliderShape::Sphere && !collider->hollow)));
+}
+bool is_no_wind(const World& world, Entity entity) {
+    return component_or_default<ForceField>(world, entity).kind != ForceKind::Wind;
+}
+bool has_no_sine(const World& world, Entity entity) {
+    return component_or_default<ForceField>(world, entity).frequency == 0;
+}
+TrailPath trail_path_of(const World& world, Entity entity) {
+    return component_or_default<Trail>(world, entity).path;
+}
+bool is_of_births(const World& world, Entity entity) {
+    return trail_path_of(world, entity) == TrailPath::Births;
+}
+bool is_of_no_particles(const World& world, Entity entity) {
+    return trail_path_of(world, entity) != TrailPath::Particles;
+}
+bool is_of_no_entity(const World& world, Entity entity) {
+    return trail_path_of(world, entity) != TrailPath::Entity;
+}
+
 constexpr std::string_view kOnGpu = "on GPU particles; set particle_emitter.executor to cpu";
 constexpr std::string_view kClosedForm = "with the integrator closed_form";
 constexpr std::string_view kAtEvents = "beside a particle_source, unless it is in flight";
@@ -404,6 +481,34 @@ constexpr Ignored kIgnored[] = {
 
     {"spray_source", "steepness", is_on_ocean, "on an ocean, which has a foam_threshold"},
     {"spray_source", "window", is_bounded_water, "on water with a size"},
+    {"spray_obstacle", "normal", is_spray_body, "on a body, whose shape has normals"},
+    {"water_look", "distortion", has_no_distortion, "unless it reflects planar or is shifted"},
+    {"water_look", "map_scale", is_not_planar, "unless it reflects planar"},
+    {"water_look", "refraction", has_no_floor, "as a floor without a water.depth"},
+    {"water_look", "floor_map", shows_no_floor, "unless it refracts the floor"},
+    {"water_look", "floor_tile", shows_no_floor, "unless it refracts the floor"},
+    {"water_look", "reflection_map", reflects_no_map, "unless it reflects the map"},
+    {"water_look", "reflection_tile", reflects_no_map, "unless it reflects the map"},
+    {"water_look", "reflection_height", reflects_no_map, "unless it reflects the map"},
+    {"water_look", "foam_below", never_breaks, "without water_waves or an ocean"},
+    {"water_look", "foam_decay", has_no_whitecaps, "without foam_below"},
+    {"water_detail", "normal_map", has_no_layers, "without layers"},
+    {"water_detail", "layers", has_no_normal_map, "without a normal_map"},
+    {"water_detail", "split", has_no_crests, "without water_waves"},
+    {"water_detail", "tile", is_not_split, "without split"},
+    {"water_ripples", "window", is_bounded_water, "on water with a size"},
+    {"water_touch", "half", touches_by_mesh, "on the shape mesh"},
+    {"water_touch", "offset", touches_by_mesh, "on the shape mesh"},
+    {"caustics", "window", is_bounded_water, "on water with a size"},
+    {"caustics", "cascades", is_bounded_water, "on water with a size"},
+    {"caustics", "mirror_resolution", has_no_mirrored_light, "without mirror_reach"},
+    {"force_field", "speed", is_no_wind, "unless it is a wind"},
+    {"force_field", "phase", has_no_sine, "without a frequency"},
+    {"trail", "active", is_of_births, "on a path of births"},
+    {"trail", "length", is_of_births, "on a path of births"},
+    {"trail", "life", is_of_births, "on a path of births"},
+    {"trail", "count", is_of_no_particles, "unless its path is of particles"},
+    {"trail", "span", is_of_no_entity, "unless its path is an entity's"},
     {"ocean", "gamma", has_no_fetch, "unless the spectrum is jonswap or tma"},
     {"ocean", "fetch", has_no_fetch, "unless the spectrum is jonswap or tma"},
 };

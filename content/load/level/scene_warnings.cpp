@@ -20,6 +20,11 @@
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_spray.h"
+#include "ecs/components/water_wake.h"
+#include "ecs/components/water_walls.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/components/wrinkle_maps.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
@@ -61,6 +66,12 @@ constexpr Need kNeeds[] = {
     {"water_waves", {"water", "", ""}},
     {"water_ripples", {"water", "", ""}},
     {"water_detail", {"water", "", ""}},
+    {"spray_source", {"water", "", ""}},
+    {"spray_source", {"water_waves", "ocean", ""}},
+    {"spray_source", {"particle_emitter", "", ""}},
+    {"spray_obstacle", {"particle_emitter", "", ""}},
+    {"floating", {"water_touch", "", ""}},
+    {"mirror_caustic", {"mesh_instance", "", ""}},
     {"lens", {"camera", "", ""}},
     {"autofocus", {"camera", "", ""}},
     {"autofocus", {"lens", "", ""}},
@@ -103,6 +114,7 @@ constexpr Need kNeeds[] = {
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_surface", {"particle_emitter", "", ""}},
     {"particle_balls", {"particle_emitter", "", ""}},
+    {"particle_wrap", {"particle_emitter", "", ""}},
     {"particle_collision", {"particle_emitter", "point_mass", ""}},
     {"point_mass", {"transform", "", ""}},
     {"air_drag", {"point_mass", "", ""}},
@@ -261,6 +273,23 @@ struct SceneCheck {
                 warn(entity, "caustics has no effect without a directional_light from above");
             }
         });
+    }
+
+    template <typename Component>
+    void warn_of_all(std::string_view what) {
+        world.query<const Component>().each(
+            [&](Entity entity, const Component&) { warn(entity, what); });
+    }
+
+    /// What meets water, in a world that has none.
+    void check_water() {
+        if (world.query<const Water>().count() == 0) {
+            warn_of_all<SprayObstacle>("spray_obstacle has no effect without a water");
+            warn_of_all<WaterWall>("water_wall has no effect without a water");
+        }
+        if (world.query<const Water, const WaterWaves>().count() == 0) {
+            warn_of_all<WakeEmitter>("wake_emitter has no effect without a water with water_waves");
+        }
     }
 
     void check_sky() {
@@ -453,6 +482,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_cameras();
     check.check_camera_positions();
     check.check_caustics();
+    check.check_water();
     check.check_sky();
     check.check_exposure();
     check.check_colors<PointLight>();
