@@ -4,21 +4,30 @@
 #include "content/app/commands/stage.h"
 #include "content/load/files/json_document.h"
 #include "content/load/made_assets.h"
+#include "ecs/base/gravity.h"
 #include "ecs/base/log.h"
 #include "ecs/components/beam.h"
+#include "ecs/components/name.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/transform.h"
 #include "ecs/snapshot.h"
+#include "tests/near.h"
 #include "tests/support.h"
 #include "tests/technique.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace limn::effects_test {
@@ -101,6 +110,165 @@ TEST_CASE("effects: every prefab works by itself, and makes particles or beams w
             CHECK(dropped == 0);
         }
     }
+}
+
+namespace {
+
+struct Drop {
+    Vec3 at = {0, 0, 0};
+    Vec3 velocity = {0, 0, 0};
+    float share = 0;  ///< of its life that is over
+};
+
+/// The particles of an emitter of this name.
+std::vector<Drop> drops_of(Stage& stage, std::string_view name) {
+    std::vector<Drop> drops;
+    stage.world.query<const Name, const ParticlePool>().each(
+        [&](const Name& own, const ParticlePool& pool) {
+            for (std::size_t i = 0; i < (own.text == name ? pool.size() : 0); ++i) {
+                drops.push_back(
+                    {.at = {pool.x[i], pool.y[i], pool.z[i]},
+                     .velocity = {pool.vx[i], pool.vy[i], pool.vz[i]},
+                     .share = pool.age[i] / pool.life[i]});
+            }
+        });
+    return drops;
+}
+
+std::unique_ptr<Stage>
+open_water(const test::TemporaryFolder& folder, std::string_view prefab, MadeAssets& made) {
+    std::unique_ptr<Stage> stage = open_text(
+        folder,
+        fmt::format(
+            R"({{"title": "t", "include": ["water.effect.json"], "entities": [{}, {{"prefab": "{}"}}]}})",
+            kCamera, prefab),
+        made);
+    step_stage(*stage);
+    return stage;
+}
+
+/// Mean of a value of the drops for which it is given, and how many those are.
+template <typename Value>
+std::pair<float, int> mean_of(const std::vector<Drop>& drops, Value&& value) {
+    double sum = 0;
+    int count = 0;
+    for (const Drop& drop : drops) {
+        if (const std::optional<float> one = value(drop)) {
+            sum += static_cast<double>(*one);
+            ++count;
+        }
+    }
+    return {static_cast<float>(sum / std::max(count, 1)), count};
+}
+
+float from_axis(const Drop& drop) {
+    return std::hypot(drop.at.x, drop.at.z);
+}
+
+}  // namespace
+
+TEST_CASE("fountain: from the first step its jet is one at the nozzle, spreads, and ends in the "
+          "basin") {
+    const test::TemporaryFolder folder;
+    MadeAssets made;
+    const std::unique_ptr<Stage> stage = open_water(folder, "fountain", made);
+    for (int moment = 0; moment < 2; ++moment) {
+        CAPTURE(moment);
+        std::vector<Drop> jet = drops_of(*stage, "jet");
+        REQUIRE(jet.size() > 1800);
+        const auto width = [&](float low, float high, bool rises) {
+            return mean_of(jet, [&](const Drop& drop) {
+                const bool is_in = drop.at.y > low && drop.at.y < high;
+                return is_in && (drop.velocity.y > 0) == rises ? std::optional(from_axis(drop))
+                                                               : std::nullopt;
+            });
+        };
+        const auto [nozzle, at_nozzle] = width(1.17f, 1.3f, true);
+        const auto [top, at_top] = width(2.1f, 2.4f, true);
+        const auto [falling, that_fall] = width(0.8f, 1.4f, false);
+        CHECK(std::min({at_nozzle, at_top, that_fall}) > 30);
+        CHECK(nozzle < 0.02f);
+        CHECK(top > 2 * nozzle);
+        CHECK(falling > 1.5f * top);
+        std::sort(
+            jet.begin(), jet.end(), [](const Drop& a, const Drop& b) { return a.at.y < b.at.y; });
+        CHECK(jet[jet.size() - jet.size() / 100].at.y == test::near(2.4).epsilon(0.08));
+        CHECK(jet[jet.size() / 25].at.y > 0.3f);  // water stands at 0.42
+        CHECK(jet[jet.size() / 25].at.y < 0.8f);
+        advance_stage(*stage, 4);
+    }
+    const auto [lowest, ends] = mean_of(drops_of(*stage, "curtain"), [](const Drop& drop) {
+        CHECK(from_axis(drop) > 0.5f);  // over the rim
+        CHECK(from_axis(drop) < 1.2f);  // into the basin
+        return drop.share > 0.95f ? std::optional(drop.at.y) : std::nullopt;
+    });
+    CHECK(ends > 10);
+    CHECK(lowest == test::near(0.45).epsilon(0.15));
+}
+
+TEST_CASE("waterfall: its strips fall freely from the lip to the foot, where its foam leaps up") {
+    const test::TemporaryFolder folder;
+    MadeAssets made;
+    const std::unique_ptr<Stage> stage = open_water(folder, "waterfall", made);
+    for (int moment = 0; moment < 2; ++moment) {
+        CAPTURE(moment);
+        for (const char* const name : {"sheet", "strands"}) {
+            CAPTURE(name);
+            const std::vector<Drop> water = drops_of(*stage, name);
+            REQUIRE(water.size() > 300);
+            int ends = 0;
+            for (const Drop& drop : water) {
+                CHECK(std::abs(drop.at.x) < 1.6f);
+                const float fallen = std::max(-drop.at.y, 0.0f);
+                const float expected = std::sqrt(2 * static_cast<float>(kGravity) * fallen);
+                CHECK(glm::length(drop.velocity) > 0.85f * expected);
+                CHECK(glm::length(drop.velocity) < expected + 2.2f);
+                ends += drop.at.y < -4 ? 1 : 0;
+            }
+            CHECK(ends > 20);
+            const auto strikes = [&](auto&& value) {
+                return mean_of(
+                           water,
+                           [&](const Drop& drop) {
+                               return drop.share > 0.96f ? std::optional(value(drop))
+                                                         : std::nullopt;
+                           })
+                    .first;
+            };
+            const std::vector<Drop> foam = drops_of(*stage, "foam");
+            REQUIRE(foam.size() > 30);
+            const auto everywhere = [&](auto&& value) {
+                return mean_of(foam, [&](const Drop& drop) { return std::optional(value(drop)); })
+                    .first;
+            };
+            const auto forward = [](const Drop& drop) { return drop.at.z; };
+            CHECK(
+                strikes([](const Drop& drop) { return drop.at.y; })
+                == test::near(-4.75).epsilon(0.05));
+            CHECK(std::abs(strikes(forward) - everywhere(forward)) < 0.25f);
+            int leaps = 0;
+            for (const Drop& drop : foam) {
+                CHECK(drop.at.y < -3.8f);
+                CHECK((drop.share > 0.5f || drop.at.y > -5.2f));
+                leaps += drop.velocity.y > 0.5f ? 1 : 0;
+            }
+            CHECK(leaps > static_cast<int>(foam.size() / 4));
+        }
+        advance_stage(*stage, 4);
+    }
+    // Mist spreads and drifts off, and is not blown into the ground.
+    const std::vector<Drop> mist = drops_of(*stage, "mist");
+    const auto height = [&](float from, float to) {
+        return mean_of(
+                   mist,
+                   [&](const Drop& drop) {
+                       return drop.share >= from && drop.share < to ? std::optional(drop.at.y)
+                                                                    : std::nullopt;
+                   })
+            .first;
+    };
+    CHECK(mist.size() > 40);
+    CHECK(height(0.6f, 1) > height(0, 0.2f) + 0.3f);
 }
 
 TEST_CASE(
