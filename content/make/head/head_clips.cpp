@@ -29,7 +29,9 @@ struct Face {
 };
 
 constexpr Face kFaces[] = {
-    {"smile", {{{"AU6", 0.8f}, {"AU12", 0.9f}, {"AU25", 0.8f}}}, {.preset = WrinklePreset::Smile}},
+    {"smile",
+     {{{"AU6", 0.8f}, {"AU12", 0.9f}, {"AU10", 0.35f}, {"AU25", 0.9f}}},
+     {.preset = WrinklePreset::Smile}},
     {"surprise",
      {{{"AU1", 1}, {"AU2", 1}, {"AU5", 0.8f}, {"AU26", 1}, {"AU25", 0.3f}}},
      {.preset = WrinklePreset::Surprised}},
