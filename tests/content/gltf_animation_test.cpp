@@ -97,6 +97,16 @@ float apart(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
+TEST_CASE("gltf animation: joints without names get one each, by which poses can refer to them") {
+    Arm arm;
+    arm.nodes = R"([
+        {"children": [1, 4]}, {"name": "upper", "children": [2]}, {"children": [3]},
+        {"name": "lamp", "mesh": 0}, {"name": "sleeve", "mesh": 0, "skin": 0}, {"name": "table"}])";
+    const Result<GltfScene> scene = arm.load();
+    REQUIRE_MESSAGE(scene.ok(), scene.error().message);
+    CHECK(scene->skeleton.joints == std::vector<std::string>{"arm", "joint 1", "upper", "joint 3"});
+}
+
 TEST_CASE("gltf animation: joints are what moves and what is above it, parents first") {
     const Result<GltfScene> scene = Arm().load();
     REQUIRE_MESSAGE(scene.ok(), scene.error().message);

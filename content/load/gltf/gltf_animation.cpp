@@ -292,7 +292,11 @@ class AnimationBuilder {
                 const std::int32_t parent =
                     node.parent < 0 ? 0 : scene_.joints[static_cast<std::size_t>(node.parent)];
                 scene_.joints[i] = static_cast<std::int32_t>(scene_.skeleton.joints.size());
-                add_joint(node.name, parent, node.transform);
+                // Views list joints, and poses refer to them, by name.
+                const std::string name =
+                    !node.name.empty() ? node.name
+                                       : fmt::format("joint {}", scene_.skeleton.joints.size());
+                add_joint(name, parent, node.transform);
             }
         }
         read_joint_limits(document_, scene_);
