@@ -158,7 +158,7 @@ void Player::toggle_skeleton() {
     if (skeleton_.is_open()) {
         skeleton_.close();
     } else if (character.is_null()) {
-        hud_->toast("select a character: click it, or choose it in the inspector (F2)");
+        hud_->toast("click a character or choose it in the inspector (F2), then press Shift F2");
     } else {
         skeleton_.open(character);
     }
