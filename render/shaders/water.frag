@@ -93,9 +93,10 @@ void main() {
     vec3 transmittance = exp(-extinction * through.path);
     vec3 refracted = through.color * transmittance + glow * (1.0 - transmittance);
     vec3 away = reflect(-to_camera, normal);
-    vec3 around = environment_light(position, normal, above ? vec3(away.x, abs(away.y), away.z) : away, roughness).mirrored;
     // Where a ray goes down, it meets the water again, which glows and reflects as if it were flat.
-    around = above && away.y < 0.0 ? mix(glow, around, water_reflectance(water, above, -away.y)) : around;
+    float again = above && away.y < 0.0 ? water_reflectance(water, above, -away.y) : 1.0;
+    vec3 leaving = above ? vec3(away.x, abs(away.y), away.z) : away;
+    vec3 around = environment_light(position, normal, leaving, roughness).mirrored;
     Side side = Side(water.origin.y - 0.02, 1.0);
 #ifdef FROM_BELOW
     vec3 scattered = scattered_light(water, 0.0, away);
@@ -109,7 +110,7 @@ void main() {
 #endif
     RayHit hit = RayHit(around, kInfiniteDistance);
 #if defined(FROM_BELOW) || !defined(NO_SCREEN_REFLECTION)
-    hit = trace_reflection(position, away, around, side, fwidth(float(visible.body)) == 0.0);
+    hit = trace_reflection(position, leaving, around, side, fwidth(float(visible.body)) == 0.0);
 #endif
 #ifdef LOOKS
     bool traced = !above || reflection_of(water) == kScreenReflection;
@@ -117,6 +118,7 @@ void main() {
 #else
     vec3 mirror = hit.color;
 #endif
+    mirror = mix(glow, mirror, again);
 #ifdef REFLECTION_MAP
     mirror = reflection_of(water) == kMapReflection ? authored_reflection(water, position, away, falling) : mirror;
 #endif

@@ -266,6 +266,45 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    Look, "water reflection: traced on screen, waves reflect far bodies as the mean of many rays, "
+          "without specks") {
+    // Bright balls toward the horizon, which a small part of each wave mirrors.
+    for (int i = -12; i <= 12; ++i) {
+        const auto x = static_cast<float>(i);
+        ball({1.7f * x, 0.7f, -16 - 4 * std::abs(std::sin(7 * x))}, 0.5f, {4, 4, 4});
+    }
+    const WaterWaves waves = {
+        .groups = {{.count = 24, .length = {0.6f, 4}, .amplitude = {0.01f, 0.05f}, .spread = 2}}};
+    WaveTable table;
+    fill_wave_table(kMirror, waves, 0, table);
+    world.create(kMirror, waves, table, WorldTransform{at({0, kLevel, 0})});
+    constexpr int kSide = 160;
+    constexpr int kFine = 6;  // rays along each side of a pixel
+    const auto image_of = [&](int side) {
+        return radiance(look({0, 3, 2}, {0, 0.2f, -5}, side, side));
+    };
+    const gpu::FloatImage image = image_of(kSide);
+    const gpu::FloatImage fine = image_of(kFine * kSide);
+    double squares = 0;
+    int specks = 0;
+    for (int y = kSide / 2; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            double mean = 0;
+            for (int i = 0; i < kFine * kFine; ++i) {
+                mean +=
+                    static_cast<double>(fine.at(kFine * x + i % kFine, kFine * y + i / kFine, 0))
+                    / (kFine * kFine);
+            }
+            const double error = static_cast<double>(image.at(x, y, 0)) - mean;
+            squares += error * error;
+            specks += std::abs(error) > 0.25 ? 1 : 0;
+        }
+    }
+    CHECK(std::sqrt(squares / (kSide * kSide / 2)) < 0.02);  // 0.036 with one ray a pixel
+    CHECK(specks < 15);                                      // 47
+}
+
+TEST_CASE_FIXTURE(
     Look, "water reflection: traced on screen, what a ray passes far behind is not reflected") {
     // A blue ramp that rises away from the camera, with a red edge, before a distant green wall. In
     // the image, rays from the water cross it from below: those close behind may show its edge,

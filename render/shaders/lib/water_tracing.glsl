@@ -16,7 +16,7 @@ const int kMaxClearTiles = 64;
 const float kMirrorThickness = 0.2;   // of the surfaces they hit, relative to the path, by eye
 const float kNothing = 1e9;
 const float kFarther = 0.8;           // ratio of the reciprocal distances of a surface and one before it
-const float kMaxSpread = 6.0;         // between hits of neighboring pixels on the same surface [px]
+const float kSameSurface = 0.25;      // relative difference of the reciprocal distances of its points
 const float kApproach = 0.25;         // share of the difference before bisection that may be left on a single surface
 const float kPastEdge = 2.0;          // of the surface that hid a ray [px]
 const int kPasses = 3;                // rejected hits after which a ray ends
@@ -49,6 +49,18 @@ vec3 ray_point(ScreenRay ray, float path) {
     return vec3(p.xy / max(p.z, 1e-6), p.z);
 }
 
+// From a ray to that of the neighboring pixel, whose difference is `by`: the step [px] of their points at `path`, here
+// `pixel` at `distance`.
+vec2 ray_step(ScreenRay by, float path, vec2 pixel, float distance) {
+    vec3 step = by.from + path * by.along;
+    return (step.xy - step.z * pixel) / max(distance, 1e-6);
+}
+
+// That of a filter two pixels wide, as far as it is more than one that mirrors pixel by pixel.
+vec2 wider_step(vec2 step) {
+    return step * max(2.0 - 2.0 / max(length(step), 1e-3), 0.0);
+}
+
 // Distance along the view axis of the surface in a pixel [m]; 0: none, or off screen.
 float distance_at(vec2 pixel) {
     bool shown = all(lessThan(abs(pixel - 0.5 * view.size.xy), 0.5 * view.size.xy));
@@ -60,20 +72,6 @@ vec2 clamp_to_screen(vec2 pixel) {
 }
 vec3 radiance_at(vec2 pixel) {
     return texelFetch(behind_radiance, ivec2(pixel), 0).rgb;
-}
-// Mean of what a pixel of the water reflects, the ray of whose center hits `pixel`. `is_inside`: its neighbors are water,
-// too.
-vec3 mean_radiance_at(vec2 pixel, bool is_inside) {
-    vec2 across = dFdx(pixel);
-    vec2 down = dFdy(pixel);
-    across = is_inside && length(across) > 1.0 && length(across) < kMaxSpread ? across : vec2(0.0);
-    down = is_inside && length(down) > 1.0 && length(down) < kMaxSpread ? down : vec2(0.0);
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; ++i) {  // a rotated grid
-        vec2 at = 0.25 * vec2(i, (2 * i + 1) % 5) - 0.375;
-        sum += radiance_at(clamp_to_screen(pixel + at.x * across + at.y * down));
-    }
-    return 0.25 * sum;
 }
 float height_of(vec2 pixel, float distance) {
     return view.camera_ws.y + view_ray(pixel).y * distance;
@@ -97,6 +95,21 @@ float blocking_nearness(vec2 pixel, Side side) {
     float near = texelFetch(behind_depth, ivec2(pixel), 0).r / view.camera_ws.w;
     float up = view_ray(pixel).y + (view.camera_ws.y - side.level) * near;  // of the surface, divided by its distance
     return near > 0.0 && side.up * up > 0.0 ? near : 1.0 / kInfiniteDistance;
+}
+
+// Mean of what a pixel of the water reflects, the ray of whose center hits `pixel` at reciprocal distance `nearness`; a:
+// share of the pixel that reflects surfaces at about that distance. `across` and `down`: changes of where rays hit from
+// pixel to pixel [px].
+vec4 mean_radiance_at(vec2 pixel, vec2 across, vec2 down, float nearness, Side side) {
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {  // a rotated grid
+        vec2 at = 0.25 * vec2(i, (2 * i + 1) % 5) - 0.375;
+        vec2 tap = clamp_to_screen(pixel + at.x * across + at.y * down);
+        float there = blocking_nearness(tap, side);
+        float hits = step(abs(there - nearness), kSameSurface * nearness);
+        sum += hits * vec4(radiance_at(tap), 1.0);
+    }
+    return vec4(sum.rgb / max(sum.a, 1.0), 0.25 * sum.a);
 }
 
 // Reciprocal distance of the water at rest in a pixel [1/m].
@@ -135,6 +148,8 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, b
     ScreenRay ray = screen_ray(position, direction);
     vec2 from = gl_FragCoord.xy;
     vec2 along = ray.along.xy - ray.along.z * from;  // pixel = from + u * along, with u = path / distance
+    ScreenRay by_x = ScreenRay(dFdx(ray.from), dFdx(ray.along));
+    ScreenRay by_y = ScreenRay(dFdy(ray.from), dFdy(ray.along));
     vec2 room = mix(view.size.xy - 1.0 - from, 1.0 - from, lessThan(along, vec2(0.0)));
     vec2 leaving = room / mix(along, vec2(1e-6), lessThan(abs(along), vec2(1e-6)));
     float max_path = ray.along.z < 0.0 ? min(kMirrorDistance, -0.95 * ray.from.z / ray.along.z) : kMirrorDistance;
@@ -211,7 +226,13 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, b
     vec2 hit = from + u * along;
     vec2 edge = min(hit, view.size.xy - hit) * view.size.zw;
     trust *= clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0);
-    vec3 color = mean_radiance_at(hit, is_inside && is_one);
+    // Where the pixels of a wave reflect more than they hit, as bodies near the horizon, they do so in part.
+    float distance = ray.from.z + path * ray.along.z;
+    vec2 across = is_inside ? wider_step(ray_step(by_x, path, hit, distance)) : vec2(0.0);
+    vec2 down = is_inside ? wider_step(ray_step(by_y, path, hit, distance)) : vec2(0.0);
+    vec4 mean = mean_radiance_at(hit, across, down, blocking_nearness(clamp_to_screen(hit), side), side);
+    vec3 color = mean.a > 0.0 ? mean.rgb : radiance_at(clamp_to_screen(hit));
+    trust *= mean.a;
     trust = !met ? 0.0 : side.up > 0.0 ? trust : 1.0;
 #ifdef FROM_BELOW
     // Under water there is no sky to fall back to: extend the pixel where the ray leaves the screen.
