@@ -1,10 +1,13 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/base/ring.h"
 #include "ecs/reflect.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -73,8 +76,7 @@ LIMN_FIELDS(TrailPoint) {
     LIMN_FIELD(span, "in world space", "m");
 }
 
-/// One unbroken trail. Its points are a ring: the i-th oldest is at
-/// slot * capacity + (first + i) % capacity. They are exactly a spacing apart.
+/// One unbroken trail. Its points are a ring in its slot, exactly a spacing apart.
 struct TrailStrand {
     TrailPoint head;          ///< at the end of the step; ages when it no longer moves
     TrailPoint previous;      ///< one step earlier
@@ -114,10 +116,19 @@ LIMN_FIELDS(TrailState) {
     LIMN_FIELD(free_slots, "slots without a strand");
 }
 
+/// The points of a strand, the oldest first.
+[[nodiscard]] inline Ring<TrailPoint> trail_points(TrailState& state, TrailStrand& strand) {
+    const std::size_t begin = std::size_t{strand.slot} * state.capacity;
+    return {std::span(state.points).subspan(begin, state.capacity), strand.first, strand.count};
+}
+[[nodiscard]] inline Ring<const TrailPoint>
+trail_points(const TrailState& state, const TrailStrand& strand) {
+    const std::size_t begin = std::size_t{strand.slot} * state.capacity;
+    return {std::span(state.points).subspan(begin, state.capacity), strand.first, strand.count};
+}
 [[nodiscard]] inline const TrailPoint&
 trail_point(const TrailState& state, const TrailStrand& strand, std::uint32_t i) {
-    return state
-        .points[std::size_t{strand.slot} * state.capacity + (strand.first + i) % state.capacity];
+    return trail_points(state, strand)[i];
 }
 
 /// Distance between points that the trail keeps [m].

@@ -25,13 +25,11 @@ std::uint32_t capacity_of(const Trail& trail) {
 }
 
 void push_point(TrailState& state, TrailStrand& strand, const TrailPoint& point) {
-    if (strand.count == state.capacity) {
-        strand.first = (strand.first + 1) % state.capacity;
-        --strand.count;
+    Ring<TrailPoint> points = trail_points(state, strand);
+    if (points.is_full()) {
+        points.pop_front();
     }
-    const std::uint32_t index = (strand.first + strand.count) % state.capacity;
-    state.points[std::size_t{strand.slot} * state.capacity + index] = point;
-    ++strand.count;
+    points.push_back(point);
     ++strand.number;
 }
 
@@ -181,17 +179,16 @@ void age_trail(TrailState& state, const Trail& trail, float dt) {
     for (TrailStrand& strand : state.strands) {
         strand.previous = strand.head;
         strand.head.age += strand.live ? 0 : dt;
-        for (std::uint32_t i = 0; i < strand.count; ++i) {
-            const std::uint32_t index = (strand.first + i) % state.capacity;
-            state.points[std::size_t{strand.slot} * state.capacity + index].age += dt;
+        Ring<TrailPoint> points = trail_points(state, strand);
+        for (std::uint32_t i = 0; i < points.size(); ++i) {
+            points[i].age += dt;
         }
         const auto beyond = [&](std::uint32_t i) {
-            const float behind = static_cast<float>(strand.count - 1 - i) * spacing;
-            return trail_point(state, strand, i).age > trail.life + dt || behind > trail.length;
+            const float behind = static_cast<float>(points.size() - 1 - i) * spacing;
+            return points[i].age > trail.life + dt || behind > trail.length;
         };
-        while (strand.count >= 2 && beyond(1)) {
-            strand.first = (strand.first + 1) % state.capacity;
-            --strand.count;
+        while (points.size() >= 2 && beyond(1)) {
+            points.pop_front();
         }
     }
     std::erase_if(state.strands, [&](const TrailStrand& strand) {

@@ -126,6 +126,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.camera-lag", "flexible camera, spring arm"},
     {"engine.camera-orbit", "third-person camera, orbit camera"},
     {"engine.compact-data", "16-bit indices, packed vertices"},
+    {"engine.containers", "ring buffer, circular list of fixed capacity"},
     {"engine.cut-copy-paste", "cut, copy and paste of subtrees, undo"},
     {"engine.depth-first", "depth prepass, z-prepass, early z"},
     {"engine.draw-frame", "order of the passes of a frame"},
