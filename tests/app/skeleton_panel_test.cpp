@@ -112,6 +112,15 @@ TEST_CASE(
     stage.step();
     CHECK(stage.keys() == 1);
     CHECK(stage.turn_of(1) == near(swung).epsilon(1e-3));  // its present pose
+    // To begin is one edit.
+    CHECK(stage.undo.undo(stage.world).find("begin") != std::string::npos);
+    CHECK_FALSE(stage.world.has<PoseKeys>(stage.figure));
+    CHECK(stage.world.get<const ClipPlayer>(stage.figure).clip == ClipId{0});
+    CHECK(stage.undo.undo_count() == 0);
+    stage.undo.redo(stage.world);
+    stage.step();
+    CHECK(stage.keys() == 1);
+    CHECK(stage.turn_of(1) == near(swung).epsilon(1e-3));
 
     stage.panel.select(3);
     stage.panel.set_time(stage.world, 1);

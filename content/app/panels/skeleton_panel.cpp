@@ -108,14 +108,15 @@ void SkeletonPanel::start_poses(World& world, UndoStack& undo) {
     }
     poses_ = true;
     overlay_.bones = true;
+    Edit edit;
+    edit.entity = character_;
     if (!world.has<PoseKeys>(character_)) {
         PoseKeys keys;
         set_pose_key(keys, *view->skeleton, 0, local_pose(*view->skeleton, view->joints));
         set_keys(world, undo, keys, "begin");
         release();
+        edit.joined = true;
     }
-    Edit edit;
-    edit.entity = character_;
     if (world.has<ClipPlayer>(character_)) {
         edit.before = AnyComponent::read(world, character_, component_info<ClipPlayer>());
     }
