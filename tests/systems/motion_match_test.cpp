@@ -124,6 +124,32 @@ TEST_CASE(
     CHECK(sums[0] < 0.7f * sums[1]);
 }
 
+TEST_CASE(
+    "motion match: toward directions between those of the clips it is steered"
+    * technique("char.motion-select")) {
+    std::array<float, 2> off{};
+    for (const float angle : {0.15f, -0.3f, 0.45f, -0.6f}) {
+        CAPTURE(angle);
+        for (const float steer : {MotionMatch{}.steer, 0.0f}) {
+            MotionMatch match;
+            match.steer = steer;
+            MatchStage stage(match);
+            stage.go({0, 0, 1.3f});
+            stage.step(180);
+            const Vec3 way(std::sin(angle), 0, std::cos(angle));
+            stage.go(1.3f * way);
+            float sum = 0;
+            for (int i = 0; i < 180; ++i) {
+                stage.step();
+                CHECK(std::abs(stage.state().steering) <= steer);
+                sum += glm::distance(stage.at().rotation * Vec3(0, 0, 1), way) / 180;
+            }
+            off[steer > 0 ? 0 : 1] += sum;
+        }
+    }
+    CHECK(off[0] < 0.7f * off[1]);
+}
+
 TEST_CASE("motion match: no clip is left before it has played for a while, but by those who stop") {
     MatchStage stage;
     std::uint32_t before = 0;
