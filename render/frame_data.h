@@ -93,6 +93,7 @@ struct FrameData {
     bool attributes = false;            ///< the main view needs its G-buffer; set in collect()
     bool material_ids = false;          ///< and the material of each pixel; set in collect()
     bool warm_up = false;               ///< drawn to compile programs, not for display (warm_up())
+    bool paced = false;                 ///< as FrameRequest::paced
     bool all_lights = false;            ///< of a warm-up: every light counts as on
     std::vector<ExtraView> views;       ///< filled in request_views()
 

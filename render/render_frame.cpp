@@ -429,6 +429,7 @@ FrameOutput Renderer::draw(
     float weight) {
     const std::size_t programs = device.shaders().program_count();
     frame_.aovs = request.aovs;
+    frame_.paced = request.paced;
     items_.sampled = request.few_triangles || frame_.warm_up;
     graph.begin_frame();
     ring_.begin_frame();

@@ -62,6 +62,7 @@ inline constexpr float kNoDepth = 1e10f;
 struct FrameRequest {
     std::vector<std::string> aovs;  ///< of aov_names(); unknown ones are left out
     bool few_triangles = false;     ///< and instances of each mesh; maps that are kept are drawn so
+    bool paced = false;  ///< in a window: work that would stop it for long is spread over frames
 };
 
 /// What the mean of samples is taken of.

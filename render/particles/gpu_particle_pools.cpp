@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -118,6 +119,7 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     pool.texels.set(pool.instances);
     pool.capacity = static_cast<std::uint32_t>(slots);
     pool.done = 0;
+    pool.seen = 0;
 }
 
 /// Offset from the oldest particle to the oldest simulated one, whose number is a multiple of the
@@ -140,11 +142,24 @@ ParticleWindow sort_window(const GpuParticlePool& pool) {
 }
 
 /// Balls that are skipped could not be bumped into, so a stride other than 1 has none.
+bool has_balls(const ParticleBalls* settings, const GpuParticlePool& pool) {
+    return settings != nullptr && pool.stride == 1;
+}
+
+constexpr std::size_t kAllSteps = std::numeric_limits<std::size_t>::max();
+
+/// Of a paced frame: a pool that is behind catches up, however many steps each frame has.
+std::size_t max_ball_steps(const GpuParticles& particles, const GpuParticlePool& pool) {
+    constexpr std::size_t kFew = 16;  // by eye
+    const bool starts_over = pool.seen == 0 || pool.seen > particles.step;
+    return kFew + (starts_over ? 0 : 2 * static_cast<std::size_t>(particles.step - pool.seen));
+}
+
 void set_balls(
     const ParticleBalls* settings, const ParticleCollision* collision,
     std::span<const GpuParticleStep> pending, std::uint64_t oldest, GpuParticlePool& pool) {
     GpuBalls& balls = pool.balls;
-    balls.radius = settings != nullptr && !pool.closed_form && pool.stride == 1
+    balls.radius = has_balls(settings, pool) && !pool.closed_form
                        ? std::max(finite_or(settings->radius, 0), 0.0f)
                        : 0.0f;
     balls.steps.clear();
@@ -187,16 +202,18 @@ std::uint32_t particle_stride(float fraction) {
 
 std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
-    const GpuParticles& particles, std::uint64_t from, GpuShapeList& shapes,
+    const GpuParticles& particles, std::uint64_t from, std::size_t max_steps, GpuShapeList& shapes,
     ParticleStepTexels& layout) {
     const std::span<const GpuParticleStep> kept = particles.kept();
     const std::uint64_t first_kept = particles.step - kept.size();
     const std::size_t skipped = std::min<std::size_t>(
         from > first_kept ? static_cast<std::size_t>(from - first_kept) : 0, kept.size());
+    const std::span<const GpuParticleStep> packed =
+        kept.subspan(skipped, std::min(kept.size() - skipped, max_steps));
     std::vector<Vec4> texels;
     pack_emitter(emitter, collision, particles, texels);
     StepParts next;
-    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+    for (const GpuParticleStep& step : packed) {
         pack_step(step, next, texels);
         next.run += static_cast<std::uint32_t>(step.births.size());
         next.force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
@@ -204,15 +221,15 @@ std::vector<Vec4> pack_particle_steps(
             static_cast<std::uint32_t>(step.colliders.size()) * layout::kColliderTexels;
         next.place += static_cast<std::uint32_t>(step.places.size()) * layout::kPlaceTexels;
     }
-    layout.steps = static_cast<int>(kept.size() - skipped);
+    layout.steps = static_cast<int>(packed.size());
     layout.runs = static_cast<int>(texels.size());
-    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+    for (const GpuParticleStep& step : packed) {
         for (const BirthRun& births : step.births) {
             texels.emplace_back(births.first, births.spacing, word(births.count), 0.0f);
         }
     }
     layout.forces = static_cast<int>(texels.size());
-    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+    for (const GpuParticleStep& step : packed) {
         const float scale = step.motion.force_scale * step.motion.step.dt;
         for (const Force& one : step.motion.forces) {
             texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
@@ -222,7 +239,7 @@ std::vector<Vec4> pack_particle_steps(
     }
     layout.colliders = static_cast<int>(texels.size());
     layout.has_shapes = false;
-    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+    for (const GpuParticleStep& step : packed) {
         for (const GpuCollider& one : step.colliders) {
             texels.insert(texels.end(), std::begin(one.rows), std::end(one.rows));
             texels.emplace_back(one.half, word(static_cast<std::uint32_t>(one.kind)));
@@ -231,7 +248,7 @@ std::vector<Vec4> pack_particle_steps(
         }
     }
     layout.places = static_cast<int>(texels.size());
-    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+    for (const GpuParticleStep& step : packed) {
         for (const GpuBirthPlace& one : step.places) {
             texels.emplace_back(one.position, one.age);
             texels.emplace_back(one.velocity, word(static_cast<std::uint32_t>(one.kind)));
@@ -365,7 +382,8 @@ bool GpuParticlePools::collides_with_depth() const {
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
     std::uint32_t look, std::optional<std::uint32_t> sort_passes,
-    const ParticleCollision* collision, std::uint32_t stride, const ParticleBalls* balls) {
+    const ParticleCollision* collision, std::uint32_t stride, const ParticleBalls* balls,
+    bool paced) {
     std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
     if (found == nullptr) {
         found = std::make_unique<GpuParticlePool>();
@@ -381,18 +399,27 @@ void GpuParticlePools::add(
         make_buffers(slots, pool);  // all recorded steps are simulated again
     }
     pool.stride = stride;
+    const std::size_t max_steps =
+        paced && has_balls(balls, pool) ? max_ball_steps(particles, pool) : kAllSteps;
     pool.steps.upload(
         *frame.ring,
-        pack_particle_steps(emitter, collision, particles, pool.done, shapes_, pool.layout));
-    const std::span<const GpuParticleStep> pending =
-        particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
-    pool.done = particles.step;
+        pack_particle_steps(
+            emitter, collision, particles, pool.done, max_steps, shapes_, pool.layout));
+    const std::uint64_t from = std::max(pool.done, first_kept);
+    const std::span<const GpuParticleStep> pending = particles.kept().subspan(
+        static_cast<std::size_t>(from - first_kept), static_cast<std::size_t>(pool.layout.steps));
+    pool.done = from + pending.size();
+    pool.seen = particles.step;
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
-    pool.count = moved_of(window, pool);
-    const std::uint64_t born_before =
-        pending.empty() ? particles.clock.born : pending.front().first;
+    const auto born_at = [&](std::uint64_t step) {  // its beginning
+        return step < particles.step ? particles.kept()[step - first_kept].first
+                                     : particles.clock.born;
+    };
+    const std::uint64_t born = std::max(born_at(pool.done), particles.oldest());
+    pool.count = moved_of(born - particles.oldest(), pool);
+    const std::uint64_t born_before = born_at(from);
     pool.old = moved_of(std::max(born_before, particles.oldest()) - particles.oldest(), pool);
     pool.plain.reset();
     pool.steering.reset();

@@ -30,6 +30,10 @@ class World;
 //
 // To scale the cost down, only every `stride`th particle by number is simulated and drawn. A larger
 // stride keeps a subset of those; for a smaller one all recorded steps are simulated again.
+//
+// Steps of balls that bump into each other take dozens of dispatches each. In a window
+// (FrameRequest::paced) those of a pool that starts over are spread over frames: it shows its past
+// in fast motion until it has caught up, and then what it would show if it had never been behind.
 
 /// Layout of the texels of steps.
 struct ParticleStepTexels {
@@ -63,6 +67,7 @@ struct GpuParticlePool {
     BufferTexture texels = BufferTexture("particles", GL_R32UI);  ///< of `instances`
     std::uint32_t capacity = 0;
     std::uint64_t done = 0;  ///< number of the first step that is not simulated yet
+    std::uint64_t seen = 0;  ///< steps that were recorded in the last frame; 0: starts over
 
     // Of this frame.
     bool used = false;
@@ -123,11 +128,12 @@ class GpuShapeList {
     BufferTexture texels_ = BufferTexture("particle shapes", GL_RGBA32F);
 };
 
-/// Packs the recorded steps from number `from` on into texels, laid out as in particle_gpu.h.
+/// Packs at most `max_steps` of the recorded steps, from number `from` on, into texels, laid out as
+/// in particle_gpu.h.
 /// `collision` is null if the particles do not collide.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const ParticleCollision* collision,
-    const GpuParticles& particles, std::uint64_t from, GpuShapeList& shapes,
+    const GpuParticles& particles, std::uint64_t from, std::size_t max_steps, GpuShapeList& shapes,
     ParticleStepTexels& layout);
 
 class GpuParticlePools {
@@ -139,12 +145,13 @@ class GpuParticlePools {
     void begin_frame(const World& world);
     /// Adds every `stride`th particle of an emitter, drawn with look number `look`. `sort_passes`:
     /// none: in the order of births; 0: a whole sort; otherwise that many passes of a sort.
+    /// `paced`: a pool of balls that is behind catches up in several frames.
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
         const GpuParticles& particles, std::uint32_t look,
         std::optional<std::uint32_t> sort_passes = std::nullopt,
         const ParticleCollision* collision = nullptr, std::uint32_t stride = 1,
-        const ParticleBalls* balls = nullptr);
+        const ParticleBalls* balls = nullptr, bool paced = false);
     /// After all emitters have been added: drops the pools of others.
     void drop_unused();
     /// Adds the passes that move and sort the particles; only the first call in a frame counts.

@@ -362,7 +362,7 @@ void collect_gpu_pools(FrameData& frame, GpuParticlePools& gpu, ParticleScene& s
                 add_pull(world, entity, index, scene);
                 gpu.add(
                     frame, entity, emitter, particles, index, sort_passes(look), collision, stride,
-                    balls);
+                    balls, frame.paced);
                 if (look.culling == ParticleCulling::Emitter) {
                     scene.extents[index].group = shape_in_world(world, entity, alpha);
                 }

@@ -187,6 +187,47 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "gpu balls: in a window a pool that starts over takes few steps a frame, then has the same bits"
+    * technique("particle.interparticle")) {
+    ParticleEmitter emitter = gas(400, 0.4f);
+    emitter.rate = 300;
+    emitter.capacity = 900;
+    Executors both(emitter, {.gravity = 0});
+    both.world.add(both.gpu, ParticleBalls{.radius = 0.05f, .bounce = 0.5f});
+    both.step(100);
+    std::size_t frames = 0;
+    std::size_t alive = 0;
+    std::size_t largest = 0;  // steps of a frame
+    std::uint64_t done = 0;
+    for (; done < both.recorded().step && frames < 100; ++frames) {
+        both.step(frames > 0 ? 1 : 0);  // time goes on
+        const std::vector<GpuParticle> shown = both.read(true);
+        CHECK(shown.size() >= alive);  // never one that is not born yet
+        alive = shown.size();
+        const GpuParticlePool& pool = *both.pools.pools().begin()->second;
+        CHECK(pool.done > done);
+        largest = std::max(largest, pool.balls.steps.size());
+        CHECK(
+            pool.count
+            == both.recorded().kept()[pool.done - 1].first
+                   + both.recorded().kept()[pool.done - 1].count);
+        done = pool.done;
+    }
+    CHECK(frames > 4);
+    CHECK(frames < 10);
+    CHECK(largest < 20);
+    const std::vector<GpuParticle> late = both.read(true);
+    both.pools = *GpuParticlePools::create(both.device());
+    const std::vector<GpuParticle> at_once = both.read();
+    REQUIRE(late.size() == at_once.size());
+    REQUIRE(late.size() > 400);
+    for (std::size_t i = 0; i < late.size(); ++i) {
+        CHECK(late[i].position_age == at_once[i].position_age);
+        CHECK(late[i].velocity_life == at_once[i].velocity_life);
+    }
+}
+
+TEST_CASE(
     "gpu balls: the neighbors of each are those of all against all"
     * technique("particle.interparticle")) {
     constexpr float kRadius = 0.03f;

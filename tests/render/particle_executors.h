@@ -79,14 +79,14 @@ struct Executors : Scene {
         world.create(collider, WorldTransform{at}, PreviousWorldTransform{at});
     }
     /// Lets the GPU catch up, and reads those that may be alive, oldest first.
-    std::vector<GpuParticle> read() {
+    std::vector<GpuParticle> read(bool paced = false) {
         FrameData frame;
         frame.ring = &ring;
         ring.begin_frame();
         pools.begin_frame(world);
         pools.add(
             frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0, std::nullopt,
-            world.find<ParticleCollision>(gpu), 1, world.find<ParticleBalls>(gpu));
+            world.find<ParticleCollision>(gpu), 1, world.find<ParticleBalls>(gpu), paced);
         graph.begin_frame();
         pools.update(graph, {});
         graph.execute();

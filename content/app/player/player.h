@@ -188,7 +188,7 @@ class Player {
     PlayerCamera camera_;
     RenderScale scale_;
     RenderView view_;  ///< of the last frame
-    FrameRequest request_;
+    FrameRequest request_ = {.aovs = {}, .paced = true};
     IVec2 last_window_size_ = {0, 0};
     std::string shader_error_;
     std::string level_error_;

@@ -194,7 +194,8 @@ void Player::draw_off_stage(const IVec2& window_size, int columns) {
         view.lens = lens_view(world, camera);
         view.entity = camera;
     }
-    const FrameOutput frame = render_frame(*off_renderer_, world, view);
+    const FrameOutput frame =
+        render_frame(*off_renderer_, world, view, {.aovs = {}, .paced = true});
     gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y, columns);
     cost_.statistics = frame.statistics;
 }
