@@ -163,7 +163,7 @@ TEST_CASE("farm: job.json is read as it was written, also from another folder") 
     job.order = FrameOrder::Preview;
     job.verify = 0.05;
     job.memory_mib = 900;
-    job.scene_sound = true;
+    job.scene_sound = job.whole_sound = true;
     job.inputs = {{"a/b.png", 0xfedcba9876543210ull, 12}};
     REQUIRE(save_farm_job(job).ok());
     std::filesystem::rename(job.folder, folder.file("moved"));
@@ -178,6 +178,7 @@ TEST_CASE("farm: job.json is read as it was written, also from another folder") 
     CHECK(read->verify == job.verify);
     CHECK(read->memory_mib == 900);
     CHECK(read->scene_sound);
+    CHECK(read->whole_sound);
     CHECK(read->program_hash == job.program_hash);
     CHECK(read->inputs[0].hash == job.inputs[0].hash);
 }

@@ -96,6 +96,7 @@ FarmJson to_json(const FarmJob& job) {
         {"film_quality", job.film_settings.quality},
         {"film_sound", job.film_settings.sound},
         {"scene_sound", job.scene_sound},
+        {"whole_sound", job.whole_sound},
         {"scheduler", kSchedulers[static_cast<std::size_t>(job.scheduler)]},
         {"hosts", job.hosts},
         {"partition", job.partition},
@@ -179,6 +180,7 @@ Status from_json(const FarmJson& object, FarmJob& job) {
     LIMN_TRY(take(object, "film_quality", job.film_settings.quality));
     LIMN_TRY(take(object, "film_sound", job.film_settings.sound));
     LIMN_TRY(take(object, "scene_sound", job.scene_sound));
+    LIMN_TRY(take(object, "whole_sound", job.whole_sound));
     LIMN_TRY(take_name(object, "scheduler", kSchedulers, job.scheduler));
     LIMN_TRY(take(object, "hosts", job.hosts));
     LIMN_TRY(take(object, "partition", job.partition));

@@ -105,6 +105,7 @@ Status freeze_sound(const Stage& stage, FarmJob& job) {
     LIMN_TRY(save_wave(mix_sounds(sounds, 0, end), file));
     job.film_settings.sound = LIMN_TRY(freeze_other_file(job, "sound", file));
     job.scene_sound = true;
+    job.whole_sound = end_of_sounds(sounds) <= end;
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
     return Done{};
@@ -390,9 +391,9 @@ Status run_farm_status(const FarmJobOptions& options) {
     return Done{};
 }
 
-/// The end of the film may be beyond that of the kept sound.
+/// The film may end after the kept sound, where the scene is still heard.
 Status warn_of_silence(const FarmJob& job) {
-    if (job.scene_sound) {
+    if (job.scene_sound && !job.whole_sound) {
         const std::string file = job.folder + "/inputs/" + job.film_settings.sound;
         const double end = LIMN_TRY(load_sound(file)).duration();
         if ((job.frames.back() + 1) / job.fps > end) {
