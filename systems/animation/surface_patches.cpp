@@ -4,6 +4,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
 #include "ecs/base/triangle.h"
+#include "systems/animation/patch_normals.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -449,17 +450,7 @@ void make_patches(
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
     std::vector<Vec4>& patches) {
     thread_local std::vector<Vec3> normals;  // reused from step to step
-    normals.assign(positions.size(), Vec3(0));
-    for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
-        const Vec3 a = positions[corners[i]];
-        const Vec3 area = glm::cross(positions[corners[i + 1]] - a, positions[corners[i + 2]] - a);
-        for (std::size_t k = 0; k < 3; ++k) {
-            normals[corners[i + k]] += area;
-        }
-    }
-    for (Vec3& normal : normals) {
-        normal = normalize_or(normal, Vec3(0, 0, 1));
-    }
+    make_patch_normals(positions, corners, normals);
     patches.resize(corners.size() / 3 * kPatchTexels);
     for (std::size_t f = 0; f < corners.size() / 3; ++f) {
         std::array<Vec3, 3> p{};

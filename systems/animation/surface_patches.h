@@ -19,10 +19,11 @@ namespace limn {
 //     B(u, v) = sum 3!/(i!j!k!) u^i v^j w^k b_ijk + sum 12 c^2 a^2 b / (a + b) x_ca,
 //
 // for the six pairs (c, a) of the coordinates and b, the third. The surface is smooth (G1) at edges
-// whose triangles face along the normals at their ends; where the markers fold, it may fold back
-// there. Beside it there is a quadratic field of unit normals, continuous across edges, which does
-// not fold where markers crowd, as the surface's own normals may. A vertex is bound once to a point
-// of the surface at rest and a distance along the normal there,
+// whose triangles face along the normals at their ends (patch_normals.h); where two sides of a fold
+// touch, none is faced by both, and it may fold back there. Beside it there is a quadratic field of
+// unit normals, continuous across edges, which does not fold where markers crowd, as the surface's
+// own normals may. A vertex is bound once to a point of the surface at rest and a distance along
+// the normal there,
 //
 //     p = B(u, v) + d n(u, v),
 //
@@ -52,7 +53,7 @@ struct PatchFaces {
     std::span<const std::uint64_t> kinds = {});
 
 /// Packs the patches over the faces `corners`, kPatchTexels each (surface_anchors.h). Normals at
-/// markers are those of the triangles around, weighted by area.
+/// markers are those of make_patch_normals().
 void make_patches(
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
     std::vector<Vec4>& patches);
