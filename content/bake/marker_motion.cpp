@@ -127,6 +127,17 @@ Vec3 carried_by_neighbors(
     return weights > 0.0f ? rest[marker] + sum / weights : rest[marker];
 }
 
+/// Of a rotation and a translation.
+Affine rigid_inverse(const Affine& rigid) {
+    Affine back;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 column(rigid.row[0][i], rigid.row[1][i], rigid.row[2][i]);
+        const Vec3 shift(rigid.row[0].w, rigid.row[1].w, rigid.row[2].w);
+        back.row[i] = Vec4(column, -glm::dot(column, shift));
+    }
+    return back;
+}
+
 }  // namespace
 
 Result<Affine> fit_rigid(std::span<const Vec3> from, std::span<const Vec3> to) {
@@ -223,30 +234,58 @@ std::vector<Vec3> sample_markers(const MarkerMotion& motion, float time) {
 Result<std::vector<Affine>> stabilize_head(
     MarkerMotion& motion, std::span<const Vec3> rest, std::span<const std::uint32_t> head) {
     LIMN_CHECK(rest.size() == motion.markers());
-    std::vector<Vec3> rest_positions;
+    std::vector<Vec3> at_rest;
     for (const std::uint32_t m : head) {
         LIMN_CHECK(m < rest.size());
-        rest_positions.push_back(rest[m]);
+        at_rest.push_back(rest[m]);
     }
-    std::vector<Affine> heads;
-    std::vector<Vec3> all = motion.positions;
+    LIMN_TRY(fit_rigid(at_rest, at_rest));
+    std::vector<Affine> heads(motion.frames());
+    std::vector<bool> is_seen;
     for (std::size_t f = 0; f < motion.frames(); ++f) {
-        const std::span<Vec3> frame =
-            std::span(all).subspan(f * motion.markers(), motion.markers());
+        std::vector<Vec3> visible;
         std::vector<Vec3> now;
         for (const std::uint32_t m : head) {
-            now.push_back(frame[m]);
+            const Vec3& p = motion.positions[f * motion.markers() + m];
+            if (is_finite(p)) {
+                visible.push_back(rest[m]);
+                now.push_back(p);
+            }
         }
-        const Result<Affine> back = fit_rigid(now, rest_positions);
-        if (!back) {
-            return fail("frame {}: {}", f, back.error().message);
-        }
-        for (Vec3& p : frame) {
-            p = transform_point(*back, p);
-        }
-        heads.push_back(LIMN_TRY(fit_rigid(rest_positions, now)));
+        const Result<Affine> fit = fit_rigid(visible, now);
+        is_seen.push_back(fit.ok());
+        heads[f] = fit ? *fit : Affine{};
     }
-    motion.positions = std::move(all);
+    if (std::ranges::find(is_seen, true) == is_seen.end()) {
+        return fail("found no frame with three markers on the head that are visible");
+    }
+    for (std::size_t f = 0; f < motion.frames(); ++f) {
+        std::size_t next = f;
+        while (next < motion.frames() && !is_seen[next]) {
+            ++next;
+        }
+        const bool has_next = next < motion.frames();
+        const Affine last = f > 0 ? heads[f - 1] : heads[next];
+        for (std::size_t g = f; g < next; ++g) {
+            const float t = static_cast<float>(g - f + 1) / static_cast<float>(next - f + 1);
+            std::vector<Vec3> between;
+            for (const Vec3& p : at_rest) {
+                const Vec3 from = transform_point(last, p);
+                between.push_back(
+                    has_next ? glm::mix(from, transform_point(heads[next], p), t) : from);
+            }
+            const Result<Affine> fit = fit_rigid(at_rest, between);
+            heads[g] = fit ? *fit : last;
+        }
+        f = next;
+    }
+    for (std::size_t f = 0; f < motion.frames(); ++f) {
+        const Affine back = rigid_inverse(heads[f]);
+        for (std::size_t m = 0; m < motion.markers(); ++m) {
+            Vec3& p = motion.positions[f * motion.markers() + m];
+            p = transform_point(back, p);
+        }
+    }
     return heads;
 }
 

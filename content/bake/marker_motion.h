@@ -42,8 +42,10 @@ void fill_gaps(MarkerMotion& motion, std::span<const Vec3> rest);
 [[nodiscard]] std::vector<Vec3> sample_markers(const MarkerMotion& motion, float time);
 
 /// Removes the motion of the head (face.head-stabilise): moves the markers of each frame rigidly so
-/// that those on the head, `head`, best fit their positions at rest. Returns the transform of the
-/// head in each frame. Fails as fit_rigid does, with the number of the frame.
+/// that those on the head, `head`, best fit their positions at rest. In frames where fewer than
+/// three of them are visible, or those lie in a line, the head moves evenly from the last pose that
+/// is known to the next. Returns the transform of the head in each frame. Fails as fit_rigid does
+/// at rest, or when there is no frame with three.
 [[nodiscard]] Result<std::vector<Affine>> stabilize_head(
     MarkerMotion& motion, std::span<const Vec3> rest, std::span<const std::uint32_t> head);
 

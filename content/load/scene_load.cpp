@@ -251,6 +251,13 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
                 scene);
         }
     }
+    for (const char* const motion : {".trc", ".htr"}) {
+        if (ends_with_any(scene, {motion})) {
+            return fail(
+                "{}: found recorded motion, expected a level or a model; `limn {}` makes one of it",
+                scene, ends_with_any(scene, {".trc"}) ? "import markers" : "bake motion");
+        }
+    }
     if (ends_with_any(scene, {".gltf", ".glb", ".obj", ".bvh"})) {
         if (!options.show.technique.empty()) {
             return fail("{}: found a model, expected a level with --show", scene);

@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <set>
 #include <string>
@@ -53,6 +54,14 @@ TEST_CASE("cli: without arguments it prints a short help") {
     CHECK(run.err.empty());
 }
 
+TEST_CASE("cli: help is a command, too, also of one command") {
+    const TemporaryFolder folder;
+    CHECK(run_limn(folder, {"help"}).out == run_limn(folder, {}).out);
+    const ProgramRun run = run_limn(folder, {"help", "bake"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.out == run_limn(folder, {"bake", "--help"}).out);
+}
+
 TEST_CASE("cli: --version names the program and its version") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(folder, {"--version"});
@@ -75,6 +84,8 @@ TEST_CASE("cli: every command has help with an example") {
 
 TEST_CASE("cli: wrong usage exits with 2 and one line that names the mistake") {
     const TemporaryFolder folder;
+    std::ofstream(folder.file("mine.level.json")) << "{}";
+    check_fails(folder, {"check", "mine"}, 1, "(did you mean mine.level.json?)");
     check_fails(folder, {"rendr"}, 2, "render");
     check_fails(folder, {"--what"}, 2);
     check_fails(folder, {"render"}, 2, "--out");

@@ -314,14 +314,16 @@ TEST_CASE(
     chair.rest.scales.assign(3, Vec3(1));
     const Result<ClipData> clip = retarget_motion(walk.motion, chair);
     REQUIRE(!clip.ok());
+    const std::string& message = clip.error().message;
+    CHECK(message.starts_with("found no joints that correspond between Hips, "));
     CHECK(
-        clip.error().message
-        == "found no joints that correspond: Hips ... and seat ..., expected equal names or parts "
-           "of a body such as LeftUpLeg or thigh.L");
+        message.find(" ... and seat, leg a, leg b, expected equal names or parts of a body such as "
+                     "LeftUpLeg or thigh.L")
+        != std::string::npos);
     chair.joints[0] = "Hips";  // which alone would only be moved
     const Result<ClipData> one = retarget_motion(walk.motion, chair);
     REQUIRE(!one.ok());
-    CHECK(one.error().message.starts_with("found one of the joints that correspond"));
+    CHECK(one.error().message.starts_with("found only one joint that corresponds between"));
 }
 
 TEST_CASE(

@@ -85,6 +85,24 @@ TEST_CASE(
     CHECK(meters.positions[0] == Vec3(10, 20, 30));
 }
 
+TEST_CASE(
+    "marker file: a byte order mark, units in capitals and the subject that Vicon names are read"
+    * technique("face.mocap-drive")) {
+    const MarkerMotion plain = *parse_trc(kTake, "take.trc");
+    const std::string vicon =
+        replaced(replaced(replaced(kTake, "\tmm", "\tMM"), "brow", "Anna:brow"), "lip", "Anna:lip");
+    const auto motion = parse_trc("\xef\xbb\xbf" + vicon, "take.trc");
+    REQUIRE(motion);
+    CHECK(motion->names == plain.names);
+    CHECK(motion->positions[0] == plain.positions[0]);
+    // Two subjects stay apart, and a name that is only a subject is one.
+    const std::string two = replaced(vicon, "Anna:lip", "Bob:lip");
+    CHECK(parse_trc(two, "take.trc")->names == std::vector<std::string>{"Anna:brow", "Bob:lip"});
+    CHECK(
+        parse_trc(replaced(vicon, "Anna:lip", "Anna:"), "take.trc")->names
+        == std::vector<std::string>{"Anna:brow", "Anna:"});
+}
+
 TEST_CASE("marker file: errors name the line") {
     CHECK(
         error_of("hello")
@@ -195,7 +213,7 @@ TEST_CASE("marker import: a take that is not a face is rejected with one line") 
         == "take: the first frame, the face at rest, lacks the marker \"face5\"");
     CHECK(
         error([](MarkerMotion& take) { take.names[0] = take.names[1] = "ear"; })
-        == "take: frame 0: found 2 markers on the head, expected at least 3");
+        == "take: found 2 markers on the head, expected at least 3");
     CHECK(
         error([](MarkerMotion& take) {
             for (std::string& name : take.names) {

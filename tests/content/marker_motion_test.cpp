@@ -6,7 +6,9 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -116,11 +118,48 @@ TEST_CASE(
         CHECK((result.ok() || motion.positions[0] == before[0]));
         return result ? std::string("none") : result.error().message;
     };
-    CHECK(error({0, 1}) == "frame 0: found 2 markers on the head, expected at least 3");
-    CHECK(error({0, 0, 1}) == "frame 0: the markers on the head lie in a line");
-    motion.positions[2 * kRest.size() + 1] = kMissing;
-    CHECK(error(kHead) == "frame 2: a marker on the head is missing");
-    CHECK(error({0, 2, 3}) == "none");
+    CHECK(error({0, 1}) == "found 2 markers on the head, expected at least 3");
+    CHECK(error({0, 0, 1}) == "the markers on the head lie in a line");
+    for (std::size_t f = 0; f < 3; ++f) {
+        motion.positions[f * kRest.size() + 1] = kMissing;
+        motion.positions[f * kRest.size() + 3] = kMissing;
+    }
+    CHECK(error(kHead) == "found no frame with three markers on the head that are visible");
+    CHECK(error({0, 2, 4}) == "none");
+}
+
+TEST_CASE(
+    "head motion: hidden markers on the head are done without, and gaps are crossed evenly"
+    * technique("face.head-stabilise")) {
+    MarkerMotion motion = make_motion(20, 0, true);
+    for (std::size_t f = 1; f < 19; ++f) {
+        motion.positions[f * kRest.size() + f % 4] = kMissing;
+    }
+    const std::vector<Affine> heads = *stabilize_head(motion, kRest, kHead);
+    for (std::size_t f = 0; f < 20; ++f) {
+        for (int i = 0; i < 3; ++i) {
+            CHECK(glm::length(heads[f].row[i] - head_at(f).row[i]) < 4e-6f);
+        }
+        CHECK(glm::distance(motion.positions[f * kRest.size() + 5], kRest[5]) < 2e-6f);
+        CHECK(is_finite(motion.positions[f * kRest.size() + f % 4]) == (f == 0 || f == 19));
+    }
+    // A head that turns about z by 0.1 a frame, unseen in frames 3 to 6 and at the end.
+    MarkerMotion turning = make_motion(10, 0, false);
+    for (std::size_t i = 0; i < turning.positions.size(); ++i) {
+        const std::size_t f = i / kRest.size();
+        const Quat turn = glm::angleAxis(0.1f * static_cast<float>(f), Vec3(0, 0, 1));
+        const bool is_hidden = i % kRest.size() < 2 && ((f > 2 && f < 7) || f == 9);
+        turning.positions[i] = is_hidden ? kMissing : turn * turning.positions[i];
+    }
+    const std::vector<Affine> even = *stabilize_head(turning, kRest, kHead);
+    for (std::size_t f = 0; f < 10; ++f) {
+        const float angle = std::atan2(even[f].row[1].x, even[f].row[0].x);
+        // In the gap along the chord from 0.2 to 0.7.
+        const float t = (static_cast<float>(f) - 2.0f) / 5.0f;
+        const float want = f > 2 && f < 7 ? 0.45f + std::atan((2.0f * t - 1.0f) * std::tan(0.25f))
+                                          : 0.1f * static_cast<float>(std::min<std::size_t>(f, 8));
+        CHECK(std::abs(angle - want) < 1e-5f);
+    }
 }
 
 TEST_CASE(

@@ -149,7 +149,8 @@ TEST_CASE(
     "marker retarget: a map places markers by points and names, and lists what is wrong"
     * technique("face.retarget-fit")) {
     const auto map = parse_marker_map(
-        "# take of June\nchin = 0 -0.07 0.1  # on the tip\nnose = mouth9_90_M\n\n", "take.map");
+        "\xef\xbb\xbf# take of June\nchin = 0 -0.07 0.1  # on the tip\nnose = mouth9_90_M\n\n",
+        "take.map");
     REQUIRE(map);
     REQUIRE(map->size() == 2);
     const FaceMarkers found = places(*map);
@@ -190,6 +191,7 @@ TEST_CASE(
     const std::string two = error({"chin", "lowerlipp", "xyz"}, "");
     CHECK(two.find("\"lowerlipp\" (did you mean lowerlip?)") != std::string::npos);
     CHECK(two.find("\"xyz\"") != std::string::npos);
+    CHECK(error({"chekL"}, "").find("\"chekL\" (did you mean cheekL?)") != std::string::npos);
     CHECK(error({"chin"}, "chin = mouth9_91_M\n").find("mouth9_90_M") != std::string::npos);
 }
 

@@ -224,8 +224,8 @@ Status bake_motion(const BakeOptions& options) {
         mark_contacts(motion, frames, recipe, clip);
     }
     fmt::print(
-        "{}: {} keys, {:.2f} s, {} contacts{}\n", options.out, frames.frames(), clip.duration,
-        clip.contacts.size(),
+        "{}: {} key{}, {:.2f} s, {} contacts{}\n", options.out, frames.frames(),
+        frames.frames() == 1 ? " (a pose, no motion)" : "s", clip.duration, clip.contacts.size(),
         recipe.travel ? fmt::format(", travels {:.2f} m", traveled) : std::string());
     take.scene.clips[take.clip] = std::move(clip);
     return save_motion_take(options.out, take);

@@ -445,7 +445,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
 Command add_info(CLI::App& program, std::string& file) {
     CLI::App* app = program.add_subcommand(
         "info", "Print the contents of a file; for a scene, the number of shader programs, too");
-    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .bvh, .png, .exr ...")
+    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .bvh, .trc, .png, .exr ...")
         ->type_name("FILE")
         ->required();
     app->footer(
@@ -746,8 +746,11 @@ int run_command_line(int argc, char** argv) {
     const std::vector<Command> commands = add_commands(program, options);
     program.require_subcommand(0, 1);
 
-    if (argc < 2) {
-        fmt::print("{}", program.help());
+    if (argc < 2 || std::string_view(argv[1]) == "help") {
+        const auto asked = std::ranges::find_if(commands, [&](const Command& command) {
+            return argc > 2 && command.app->get_name() == argv[2];
+        });
+        fmt::print("{}", asked == commands.end() ? program.help() : asked->app->help("limn"));
         return kDone;
     }
     if (explain_unknown_command(argv[1], commands)) {

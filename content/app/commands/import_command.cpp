@@ -31,10 +31,12 @@ Status import_bvh(const ImportOptions& options) {
         grow(box, transform_point(rest[j], Vec3(0)));
     }
     const bool has_clip = !scene.clips.empty();
+    const std::size_t keys = has_clip ? scene.clips[0].sheets[0].times.size() : 0;
     fmt::print(
-        "{}: {} joints, {:.2f} m high, {} keys, {:.2f} s\n", options.out, rest.size() - 1,
-        box.max.y - box.min.y, has_clip ? scene.clips[0].sheets[0].times.size() : 0,
-        has_clip ? scene.clips[0].duration : 0.0f);
+        "{}: {} joints, {:.2f} m high, {}\n", options.out, rest.size() - 1, box.max.y - box.min.y,
+        keys == 1
+            ? "one key: a pose, no motion"
+            : fmt::format("{} keys, {:.2f} s", keys, has_clip ? scene.clips[0].duration : 0.0f));
     return Done{};
 }
 

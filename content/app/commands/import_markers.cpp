@@ -6,6 +6,7 @@
 #include "content/load/files/json_document.h"
 #include "content/load/gltf/gltf_load.h"
 #include "content/load/gltf/gltf_write.h"
+#include "content/sound/scene_sound.h"
 #include "content/speech/speech_library.h"
 #include "content/speech/take_labels.h"
 #include "content/speech/wave_file.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -56,9 +58,40 @@ Result<std::string> write_performance(
         markers.shapes.size(), largest, clip.times.back());
 }
 
+/// The mean of the channels of a sound in any format.
+Result<Recording> load_one_channel(const std::string& path) {
+    const SoundData sound = LIMN_TRY(load_sound(path));
+    const auto channels = static_cast<std::size_t>(sound.channels);
+    Recording mean{static_cast<std::uint32_t>(sound.rate), {}};
+    for (std::size_t i = 0; i + channels <= sound.samples.size(); i += channels) {
+        const float sum = sound.samples[i] + (channels > 1 ? sound.samples[i + 1] : 0.0f);
+        const float sample = std::round(32768.0f * sum / static_cast<float>(channels));
+        mean.samples.push_back(static_cast<std::int16_t>(std::clamp(sample, -32768.0f, 32767.0f)));
+    }
+    return mean;
+}
+
+/// The markers in the order of `names`, if these are the same ones.
+MarkerMotion in_order_of(std::span<const std::string> names, const MarkerMotion& motion) {
+    if (std::ranges::equal(names, motion.names)
+        || !std::ranges::is_permutation(names, motion.names)) {
+        return motion;
+    }
+    MarkerMotion sorted{{names.begin(), names.end()}, motion.rate, {}};
+    for (std::size_t f = 0; f < motion.frames(); ++f) {
+        for (const std::string& name : names) {
+            const auto m = std::ranges::find(motion.names, name) - motion.names.begin();
+            sorted.positions.push_back(
+                motion.positions[f * motion.markers() + static_cast<std::size_t>(m)]);
+        }
+    }
+    return sorted;
+}
+
 /// The take as marker channels with sound and labels.
 Result<SpeechRecording>
-record_take(const ImportOptions& options, const MarkerMotion& motion, SpeechLibrary& library) {
+record_take(const ImportOptions& options, const MarkerMotion& take, SpeechLibrary& library) {
+    const MarkerMotion motion = in_order_of(library.markers, take);
     if (library.markers.empty() && library.recordings.empty()) {
         library.rate = motion.rate;
         library.markers = motion.names;
@@ -77,8 +110,8 @@ record_take(const ImportOptions& options, const MarkerMotion& motion, SpeechLibr
             }
         }
         return fail(
-            "{}: found {} markers, expected the {} of the library {} in the same order", options.in,
-            motion.markers(), library.markers.size(), options.library);
+            "{}: found {} markers, expected the {} of the library {}", options.in, motion.markers(),
+            library.markers.size(), options.library);
     }
     SpeechRecording recording;
     recording.text = options.text;
@@ -86,8 +119,7 @@ record_take(const ImportOptions& options, const MarkerMotion& motion, SpeechLibr
     if (sound.empty()) {
         sound = std::filesystem::path(options.in).replace_extension(".wav").string();
     }
-    const std::vector<std::byte> wave = LIMN_TRY(read_file(sound));
-    recording.sound = LIMN_TRY(parse_wave(wave, sound));
+    recording.sound = LIMN_TRY(load_one_channel(sound));
     const float covered = static_cast<float>(motion.frames() - 1) / motion.rate;
     const float duration = std::min(covered, recording.sound.duration());
     if (options.labels.empty()) {
@@ -145,8 +177,9 @@ Status add_to_library(const ImportOptions& options, const MarkerMotion& motion) 
     library.recordings.push_back(std::move(recording));
     LIMN_TRY(write_file(options.library, write_speech_library(library)));
     fmt::print(
-        "{}: {} recordings of {} markers, the last with {} sounds\n", options.library,
-        library.recordings.size(), library.markers.size(), sounds);
+        "{}: {} recording{} of {} markers, the last with {} sounds\n", options.library,
+        library.recordings.size(), library.recordings.size() == 1 ? "" : "s",
+        library.markers.size(), sounds);
     return Done{};
 }
 

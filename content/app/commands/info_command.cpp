@@ -4,6 +4,7 @@
 #include "content/app/commands/trial_file.h"
 #include "content/game/game.h"
 #include "content/game/wrinkle_trial_system.h"
+#include "content/load/faces/marker_file.h"
 #include "content/load/files/atomic_file.h"
 #include "content/load/files/dds_file.h"
 #include "content/load/files/exr_file.h"
@@ -314,7 +315,8 @@ void print_assets(
     }
     std::vector<std::string> skins;
     for (const SkinData& skin : assets.skins) {
-        skins.push_back(fmt::format("{:>8} joints  {}", skin.joints.size(), skin.name));
+        skins.push_back(fmt::format(
+            "{:>8} joints  {}", skin.joints.size(), skin.name.empty() ? "(no name)" : skin.name));
     }
     print_list("skin", skins);
     if (!assets.clips.empty()) {
@@ -445,6 +447,30 @@ Status print_trials(const std::string& file) {
     return Done{};
 }
 
+/// Names of the markers, and how long each is hidden.
+Status print_markers(const std::string& file) {
+    const MarkerMotion motion = LIMN_TRY(load_trc(file));
+    fmt::print(
+        "{:.2f} s, {} at {:.6g} per second\n",
+        static_cast<double>(motion.frames() - 1) / static_cast<double>(motion.rate),
+        counted(motion.frames(), "frame"), motion.rate);
+    std::vector<std::string> lines;
+    for (std::size_t m = 0; m < motion.markers(); ++m) {
+        std::size_t hidden = 0;
+        for (std::size_t f = 0; f < motion.frames(); ++f) {
+            hidden += is_finite(motion.positions[f * motion.markers() + m]) ? 0 : 1;
+        }
+        lines.push_back(
+            hidden == 0
+                ? motion.names[m]
+                : fmt::format(
+                    "{}  hidden in {:.0f} % of the frames", motion.names[m],
+                    100.0 * static_cast<double>(hidden) / static_cast<double>(motion.frames())));
+    }
+    print_list("marker", lines);
+    return Done{};
+}
+
 }  // namespace
 
 Status run_info(const std::string& file) {
@@ -459,6 +485,9 @@ Status run_info(const std::string& file) {
                                                                 ".webp", ".hdr", ".dds"};
     if (std::find(kImages.begin(), kImages.end(), extension) != kImages.end()) {
         return print_image(file);
+    }
+    if (extension == ".trc") {
+        return print_markers(file);
     }
     return print_scene(file);
 }

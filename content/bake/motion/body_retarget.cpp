@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 // Techniques: char.retarget-body
@@ -143,6 +145,14 @@ void move_hands(
     }
 }
 
+/// The first names, for messages.
+std::string first_joints(const SkeletonData& skeleton) {
+    constexpr std::size_t kShown = 5;
+    const std::span<const std::string> names(skeleton.joints);
+    return join_text(names.first(std::min(kShown, names.size())), ", ")
+           + (names.size() > kShown ? " ..." : "");
+}
+
 }  // namespace
 
 std::vector<std::int32_t> match_joints(const SkeletonData& source, const SkeletonData& target) {
@@ -182,9 +192,10 @@ Result<ClipData> retarget_motion(
     const std::size_t smaller = std::min(source.skeleton.joints.size(), target.joints.size());
     if (made.joints < std::min<std::size_t>(2, smaller)) {  // one would only be moved
         return fail(
-            "found {} joints that correspond: {} ... and {} ..., expected equal names or parts of "
-            "a body such as LeftUpLeg or thigh.L",
-            made.joints == 0 ? "no" : "one of the", source.skeleton.joints[0], target.joints[0]);
+            "found {} between {} and {}, expected equal names or parts of a body such as LeftUpLeg "
+            "or thigh.L",
+            made.joints == 0 ? "no joints that correspond" : "only one joint that corresponds",
+            first_joints(source.skeleton), first_joints(target));
     }
     made.scale = map.scale;
     LIMN_TRY(check_pose_count(source, find_motion_rate(source.clip)));

@@ -17,13 +17,15 @@
 namespace limn {
 namespace {
 
-constexpr float kLargestMarkerFile = 1e6f;  ///< coordinate [m]
-constexpr std::size_t kFirstColumns = 2;    ///< frame and time
+constexpr float kLargestMarkerFile = 1e6f;                    ///< coordinate [m]
+constexpr std::size_t kFirstColumns = 2;                      ///< frame and time
+constexpr std::string_view kMarkerFileMark = "\xef\xbb\xbf";  ///< UTF-8, as some editors write it
 
 /// Lines of a text, as cells between tabs without spaces around.
 class TabReader {
   public:
-    explicit TabReader(std::string_view text) : text_(text) {}
+    explicit TabReader(std::string_view text)
+        : text_(text.starts_with(kMarkerFileMark) ? text.substr(kMarkerFileMark.size()) : text) {}
 
     bool next(std::vector<std::string_view>& cells) {
         cells.clear();
@@ -63,7 +65,24 @@ bool read_number(std::string_view cell, float& number) {
 }
 
 float meters_of(std::string_view unit) {
-    return unit == "mm" ? 1e-3f : unit == "cm" ? 1e-2f : unit == "m" ? 1.0f : 0.0f;
+    return unit == "mm" || unit == "MM"   ? 1e-3f
+           : unit == "cm" || unit == "CM" ? 1e-2f
+           : unit == "m" || unit == "M"   ? 1.0f
+                                          : 0.0f;
+}
+
+/// Removes the name of the subject that Vicon writes before each marker, "Anna:Chin", if it is
+/// before all of them.
+void remove_subject(std::vector<std::string>& names) {
+    const std::string subject = names[0].substr(0, names[0].find(':') + 1);
+    const auto has_subject = [&](const std::string& name) {
+        return name.starts_with(subject) && name.size() > subject.size();
+    };
+    if (!subject.empty() && std::ranges::all_of(names, has_subject)) {
+        for (std::string& name : names) {
+            name.erase(0, subject.size());
+        }
+    }
 }
 
 class TrcParser {
@@ -130,6 +149,7 @@ class TrcParser {
                 "{}: found {} markers, expected 1 to {}", here(), motion_.names.size(),
                 limits_.max_markers);
         }
+        remove_subject(motion_.names);
         return Done{};
     }
 

@@ -19,7 +19,8 @@ namespace limn {
 //     1       0     1   2   3   4   5   6
 //     2       0.02              4   5   6           the brow is hidden
 //
-// Times follow from the rate; the time column is ignored.
+// Times follow from the rate; the time column is ignored. A subject before all names, as in
+// "Anna:brow", is removed.
 
 struct MarkerLimits {
     std::size_t max_markers = 4096;

@@ -128,8 +128,12 @@ std::vector<std::string> known_names() {
     std::vector<std::string> names = head_markers().names;
     for (const NamedPlace& place : kPlaces) {
         if (place.has_sides) {
-            names.push_back("left_" + std::string(place.name));
-            names.push_back("right_" + std::string(place.name));
+            for (const char* const before : {"left_", "right_"}) {
+                names.push_back(before + std::string(place.name));
+            }
+            for (const char* const after : {"L", "R", "_L", "_R"}) {
+                names.push_back(std::string(place.name) + after);
+            }
         } else {
             names.emplace_back(place.name);
         }
@@ -207,6 +211,9 @@ float size_of(std::span<const Vec3> points) {
 Result<std::vector<FaceMarkerPlace>>
 parse_marker_map(std::string_view text, const std::string& file) {
     std::vector<FaceMarkerPlace> places;
+    if (text.starts_with("\xef\xbb\xbf")) {
+        text.remove_prefix(3);  // byte order mark
+    }
     for (std::size_t line = 1; !text.empty(); ++line) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         std::string row(text.substr(0, std::min(end, text.find('#'))));

@@ -88,9 +88,12 @@ Result<std::string> find_level(std::string_view name) {
         }
         names.emplace_back(level.name);
     }
+    const std::string file = std::string(name) + ".level.json";
+    std::error_code error;
     return fail(
         "{}: found no level of that name, expected one of `limn levels`{}", name,
-        did_you_mean(name, names));
+        fs::exists(file, error) ? format_text(" (did you mean {}?)", file)
+                                : did_you_mean(name, names));
 }
 
 }  // namespace limn
