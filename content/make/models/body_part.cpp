@@ -336,7 +336,7 @@ void add_arm(Anatomy& arm) {
     arm.join(kBrachioradialis, {0, 0, 1}, {1, 0.8f}, 1.4f);  // its `right` is +x, the thumb's side
     arm.join(kFlexors, {0, 0, 1}, {1, 0.8f}, 1.4f);
     body.push_back(cone({0.4f, -18, 2.3f}, {0.8f, -10, 1.9f}, 2.0f, 0.9f, 1.4f));  // end of biceps
-    body.push_back(hollow({0.5f, -9.2f, 5.95f}, {1.9f, 3.2f, 1.5f}, 2.0f));    // bend of the elbow
+    body.push_back(hollow({0.5f, -9.2f, 5.95f}, {1.9f, 3.2f, 1.5f}, 2.0f));   // bend of the elbow
     body.push_back(ball({-0.6f, -11.6f, -3.6f}, {1.2f, 1.8f, 0.95f}, 1.5f));  // point of the elbow
     body.push_back(ball({-3.6f, -11.6f, -1.2f}, {0.8f, 1.2f, 1.0f}, 1.5f));
     body.push_back(ball({-1.85f, 11.8f, -1.1f}, {0.75f, 1.0f, 0.75f}, 1.3f));  // head of the ulna
