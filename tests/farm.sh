@@ -305,7 +305,7 @@ case_film() {
     loudest=$(ffmpeg -nostdin -ss 1.2 -i heard.mp4 -af volumedetect -vn -f null - 2>&1 | sed -n 's/.*max_volume: \(.*\) dB/\1/p')
     awk -v db="${loudest:--99}" 'BEGIN {exit !(db > -30)}' || fail "the end of the film has ${loudest:-no} dB"
     # A film that goes on after the last sound is silent as the scene is; one that repeats for ever is not.
-    expect 0 "$limn" farm resume heard.mp4.farm --frames 18:39
+    expect 0 "$limn" farm resume heard.mp4.farm --frames 120:121
     ! grep -q "the kept sound ends" log.txt || fail "warned of a scene that is silent itself"
     sed 's|"file": "tone.wav"|&, "every": 4|' scene/heard.level.json >scene/again.level.json
     expect 0 "$limn" farm local scene/again.level.json --size 64x36 --fps 0.1 --frames 0:1 -o again.mp4
