@@ -6,6 +6,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/surface_binding.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
@@ -107,6 +108,29 @@ TEST_CASE("level nodes: fields that are named change in one use of a file, the o
     CHECK(world.has<Spin>(left));
     CHECK_FALSE(world.has<Spin>(right));
     CHECK_FALSE(world.has<PointLight>(scene.find("Bulb", "dark")));
+}
+
+TEST_CASE("level nodes: fields may name entities of the level, also in copies") {
+    Scene scene(R"(
+        {"name": "face", "gltf": "lamp.gltf", "repeat": {"count": [2, 1, 1]}, "nodes": {
+            "Bulb": {"surface_binding": {"surface": "take", "method": "patches"}}}},
+        {"name": "other", "transform": {}},
+        {"name": "take", "transform": {}})");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    Entity take;
+    scene.world.query<const Name>().each(
+        [&](Entity entity, const Name& own) { take = own.text == "take" ? entity : take; });
+    REQUIRE_FALSE(take.is_null());
+    int bound = 0;
+    scene.world.query<const SurfaceBinding>().each([&](const SurfaceBinding& binding) {
+        CHECK(binding.surface == take);
+        ++bound;
+    });
+    CHECK(bound == 2);
+    const Scene wrong(R"({"name": "face", "gltf": "lamp.gltf", "nodes": {
+            "Bulb": {"surface_binding": {"surface": "tke"}}}}, {"name": "take"})");
+    CHECK(has(wrong.error, "surface_binding.surface: found the entity \"tke\""));
+    CHECK(has(wrong.error, "(did you mean take?)"));
 }
 
 TEST_CASE("level nodes: a material of the level goes to all parts of a node") {
@@ -267,8 +291,8 @@ TEST_CASE("level nodes: what a file does not have is refused with its place and 
          "1000000 cd"},
         {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"clip_player": {"clip": "none"}}}})",
          "nodes.Bulb.clip_player: found the clip \"none\""},
-        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"autofocus": {"target": "a"}}}})",
-         "found the entity \"a\", expected none"},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"autofocus": {"target": "b"}}}})",
+         "entity \"a\": autofocus.target: found the entity \"b\", expected an existing name"},
         {R"({"name": "a", "gltf": "lamp.gltf", "nodes": [1]})",
          "expected an object: nodes of the glTF file by name"},
     };

@@ -444,7 +444,7 @@ Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index
         const JsonValue* const nodes = layer->find("nodes");
         if (nodes != nullptr && gltf != nullptr) {
             LIMN_TRY(read_node_changes(
-                *nodes, index, location_in(location, "nodes"), names_, list.node_changes));
+                *nodes, index, location_in(location, "nodes"), names_in(list), list.node_changes));
         }
     }
     return Done{};
@@ -530,10 +530,11 @@ void LevelEntities::resolve(List& list, bool is_level) {
         return outside < 0 ? std::nullopt
                            : std::optional(level_entity(static_cast<std::uint32_t>(outside)));
     };
-    for (std::size_t i = 0; i < list.entities.entities.size(); ++i) {
-        std::vector<AnyComponent>& components = list.entities.entities[i].components;
-        const auto read_names = [&](const ComponentInfo& info, const FieldInfo& field, void* data) {
-            for_each_entity(std::span(&field, 1), data, [&](Entity& entity) {
+    const auto read_names = [&](std::size_t i, AnyComponent& component) {
+        const ComponentInfo& info = component.info();
+        for (std::size_t k = 0; info.has_entities && k < info.fields.size(); ++k) {
+            const FieldInfo& field = info.fields[k];
+            for_each_entity(std::span(&field, 1), component.data(), [&](Entity& entity) {
                 if (entity.generation != kUseGeneration) {
                     return;
                 }
@@ -545,12 +546,16 @@ void LevelEntities::resolve(List& list, bool is_level) {
                 }
                 entity = named.value_or(Entity{});
             });
-        };
-        for (AnyComponent& component : components) {
-            const ComponentInfo& info = component.info();
-            for (std::size_t k = 0; info.has_entities && k < info.fields.size(); ++k) {
-                read_names(info, info.fields[k], component.data());
-            }
+        }
+    };
+    for (std::size_t i = 0; i < list.entities.entities.size(); ++i) {
+        for (AnyComponent& component : list.entities.entities[i].components) {
+            read_names(i, component);
+        }
+    }
+    for (NodeChange& change : list.node_changes) {
+        if (!change.set.value.is_empty()) {
+            read_names(change.entity, change.set.value);
         }
     }
 }

@@ -100,15 +100,13 @@ void change_component(World& world, Entity entity, const NodeChange& change) {
 Status read_node_changes(
     const JsonValue& json, std::uint32_t entity, const JsonLocation& location,
     const NameResolver& names, std::vector<NodeChange>& changes) {
-    NameResolver assets = names;
-    assets.entity = nullptr;
     LIMN_TRY(expect(json, JsonKind::Object, location, "an object: nodes of the glTF file by name"));
     for (const JsonMember& node : json.members) {
         const JsonLocation at = location_in(location, node.key);
         LIMN_TRY(expect(node.value, JsonKind::Object, at, "an object: components by name"));
         for (const JsonMember& component : node.value.members) {
             NodeChange change{entity, node.key, node.at, nullptr, {}};
-            LIMN_TRY(read_change(component, at, assets, change));
+            LIMN_TRY(read_change(component, at, names, change));
             changes.push_back(std::move(change));
         }
     }

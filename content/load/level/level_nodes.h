@@ -37,8 +37,8 @@ struct NodeChange {
     ScriptAction set;                     ///< without a value: removes it
 };
 
-/// Appends the changes of the object `json`, the "nodes" of `entity`. Names of entities cannot be
-/// used.
+/// Appends the changes of the object `json`, the "nodes" of `entity`. Names of entities are those
+/// that the level has around that entity.
 [[nodiscard]] Status read_node_changes(
     const JsonValue& json, std::uint32_t entity, const JsonLocation& location,
     const NameResolver& names, std::vector<NodeChange>& changes);

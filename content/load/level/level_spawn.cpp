@@ -155,6 +155,7 @@ std::vector<Entity> spawn_level(World& world, Level level) {
     for (NodeChange& change : level.node_changes) {
         if (!change.set.value.is_empty()) {
             offset_asset_ids(*change.info, change.set.value.data(), offsets);
+            set_entities(change.set.value, entities, false);
         }
     }
     apply_node_changes(world, level.node_changes, entities);
