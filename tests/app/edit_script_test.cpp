@@ -33,7 +33,8 @@ constexpr const char* kStreet = R"({
   "materials": {"red": {"base_color": [0.8, 0.1, 0.05]}},
   "meshes": {"box": {"make": "box"}},
   "prefabs": {"lantern": {"point_light": {"intensity": 5}, "spot_light": {"intensity": 1},
-                          "children": [{"name": "flame", "point_light": {"intensity": 2}}]}},
+                          "children": [{"name": "flame", "point_light": {"intensity": 2}}]},
+              "torch": {"children": [{"name": "spark", "point_light": {}}, {"name": "flame"}]}},
   "entities": [
     {"name": "street", "transform": {"position": [0, 0, 5]}, "children": [
       {"name": "post", "transform": {"position": [1, 2, 3]}, "children": [
@@ -42,6 +43,9 @@ constexpr const char* kStreet = R"({
     {"name": "left", "prefab": "lantern"},
     {"name": "right", "prefab": "lantern", "spot_light": {"intensity": 2}},
     {"name": "row", "repeat": {"count": [2, 1, 1]}, "spot_light": {}},
+    {"name": "torch", "prefab": "torch"},
+    {"name": "lamp 2", "point_light": {"intensity": 9}},
+    {"transform": {"position": [0, 0, 1]}, "children": [{"name": "inner"}]},
     {"name": "box", "mesh_instance": {"mesh": "box", "material": "red"}},
     {"name": "eye", "camera": {}, "transform": {"position": [0, 1, 9]}}
   ]
@@ -151,8 +155,97 @@ TEST_CASE(
         CHECK(describe(reopened->world) == describe(level.world()));
         last = saved.text;
     }
-    CHECK(last.find("\"arm\"") > last.find("\"other\""));
     CHECK(describe(level.world()) != before);
+}
+
+TEST_CASE(
+    "edit script: whole entities are saved where they are in the end"
+    * technique("engine.editor-inspector")) {
+    const std::vector<std::vector<const char*>> scripts = {
+        {"duplicate arm", "cut lamp 3"},
+        {"duplicate arm", "cut lamp 3", "paste box", "delete arm 2"},
+        {"cut lamp", "paste other", "delete other"},
+        {"delete lamp 2", "duplicate lamp"},
+        {"cut post", "paste other", "cut arm", "cut post", "paste arm"},
+        {"duplicate box", "cut post", "paste box 2", "cut box 2", "paste other"},
+        {"duplicate box", "cut box", "paste box 2", "delete box 2"},
+        {"delete street"},
+        {"cut arm", "delete street", "set lamp.point_light.intensity = 4"},
+        {"duplicate left", "delete left", "duplicate left 2", "delete left 2"},
+        {"set flame.point_light.intensity = 3", "undo"},
+    };
+    for (const std::vector<const char*>& script : scripts) {
+        EditedLevelFile level;
+        for (const char* const line : script) {
+            level.run(line);
+        }
+        CAPTURE(script.back());
+        const EditedLevel saved = level.save();
+        CHECK(saved.left_out.empty());
+        const std::string file = level.folder.file("out.level.json");
+        REQUIRE(write_file(file, saved.text).ok());
+        const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);
+        step_stage(*reopened);
+        step_stage(*level.stage);
+        CHECK(describe(reopened->world) == describe(level.world()));
+    }
+}
+
+TEST_CASE("edit script: what is deleted and referred to is destroyed at the start") {
+    EditedLevelFile level(R"({"entities": [
+        {"name": "box", "children": [{"name": "lid"}]},
+        {"name": "eye", "camera": {}, "orbit_camera": {"target": "box"}}]})");
+    level.run("delete box");
+    const std::string text = level.save().text;
+    CHECK(text.find(R"("destroy": ["box"])") != std::string::npos);
+    CHECK(text.find(R"("name": "lid")") != std::string::npos);
+}
+
+TEST_CASE("edit script: where an edit cannot be saved, all others are, and it is named") {
+    const std::pair<const char*, const char*> lines[] = {
+        {"cut spark", "the move of \"spark\""},
+        {"delete spark", "the deletion of \"spark\""},
+        {"set flame.transform.position = [1, 1, 1]", ""},
+        {"cut inner", "the move of \"inner\""}};
+    for (const auto& [line, left_out] : lines) {
+        CAPTURE(line);
+        EditedLevelFile level;
+        level.run("set lamp.point_light.intensity = 20");
+        level.run(line);
+        const EditedLevel saved = level.save();
+        CHECK(saved.text.find("\"intensity\": 20") != std::string::npos);
+        if (*left_out != '\0') {
+            REQUIRE(!saved.left_out.empty());
+            CHECK(saved.left_out.front().starts_with(left_out));
+        }
+    }
+    EditedLevelFile level;
+    for (const char* const line :
+         {"copy lamp", "paste spark", "cut box", "paste spark", "add box.point_light",
+          "set box.transform.position = [9, 9, 9]"}) {
+        level.run(line);
+    }
+    const EditedLevel saved = level.save();
+    REQUIRE(saved.left_out.size() == 2);
+    CHECK(saved.left_out[0].starts_with("\"lamp 3\", whose parent is \"spark\""));
+    CHECK(saved.left_out[1].starts_with("the move of \"box\""));
+    const std::string file = level.folder.file("out.level.json");
+    REQUIRE(write_file(file, saved.text).ok());
+    const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);
+    const Entity box = find(reopened->world, "box");
+    CHECK(parent_of(reopened->world, box).is_null());
+    CHECK(reopened->world.has<PointLight>(box));
+    // A place relative to the parent that it did not get would be wrong.
+    CHECK(reopened->world.value<Transform>(box).position == Vec3(0));
+}
+
+TEST_CASE("edit script: the first of two thousand edits is saved, too") {
+    EditedLevelFile level;
+    level.run("set box.transform.scale = [2, 2, 2]");
+    for (int i = 0; i < 2000; ++i) {
+        level.run(i % 2 == 0 ? "set exposure.ev = 2" : "set exposure.ev = 3");
+    }
+    CHECK(level.save().text.find("\"scale\": [2, 2, 2]") != std::string::npos);
 }
 
 TEST_CASE(
@@ -221,7 +314,7 @@ TEST_CASE("edit script: what cannot be done is one line, and changes nothing") {
     CHECK(
         level.error("set lamp.point_light.intensity = -1").find("intensity") != std::string::npos);
     CHECK(level.error("cut lampp").find("did you mean lamp?") != std::string::npos);
-    CHECK(level.error("cut flame").find("found 2 entities named \"flame\"") != std::string::npos);
+    CHECK(level.error("cut flame").find("found 3 entities named \"flame\"") != std::string::npos);
     CHECK(level.error("paste lamp").find("nothing was cut or copied") != std::string::npos);
     CHECK(
         level.error("add lamp.point_light").find("expected an entity without it")
@@ -231,6 +324,9 @@ TEST_CASE("edit script: what cannot be done is one line, and changes nothing") {
         != std::string::npos);
     CHECK(level.error("add lamp.spotlight").find("did you mean spot_light?") != std::string::npos);
     CHECK(level.error("add lamp").find("expected NAME.COMPONENT") != std::string::npos);
+    CHECK(level.error("set lamp.parent.entity = lamp").find("cut and paste") != std::string::npos);
+    CHECK(level.error("remove lamp.parent").find("cut and paste") != std::string::npos);
+    CHECK(level.error("set lamp.name.text = sun").find("rename it") != std::string::npos);
     CHECK(level.error("redo").find("nothing to redo") != std::string::npos);
     level.run("copy street");
     CHECK_FALSE(level.error("set street.transform.scale = [0, 0, 0]").empty());
@@ -311,11 +407,26 @@ TEST_CASE("edit save: what a level cannot say is named") {
     removal.before = AnyComponent::read(world, removal.entity, component_info<SpotLight>());
     apply_edit_value(world, removal, {});
     undo.record(removal);
+    const auto set = [&](Entity entity, AnyComponent after) {
+        Edit change;
+        change.entity = entity;
+        change.before = AnyComponent::read(world, entity, after.info());
+        apply_edit_value(world, change, after);
+        change.after = std::move(after);
+        undo.record(change);
+    };
+    set(parent_of(world, find(world, "inner")), AnyComponent::of(Transform{.position = {3, 3, 3}}));
+    set(find(world, "box"), AnyComponent::of(Name{"crate"}));
     const EditedLevel saved = level.save(undo.done());
-    REQUIRE(saved.left_out.size() == 3);
-    CHECK(saved.left_out[0].find("removed from \"row[1]\"") != std::string::npos);
-    CHECK(saved.left_out[1].find("the move of \"row[0]\"") != std::string::npos);
-    CHECK(saved.left_out[2].find("the material \"of a file\"") != std::string::npos);
+    std::string all;
+    for (const std::string& what : saved.left_out) {
+        all += what + '\n';
+    }
+    CHECK(all.find("removed from \"row[1]\"") != std::string::npos);
+    CHECK(all.find("the move of \"row[0]\"") != std::string::npos);
+    CHECK(all.find("the material \"of a file\"") != std::string::npos);
+    CHECK(all.find("edits of entities without a name") != std::string::npos);
+    CHECK(all.find("the new name of \"box\"") != std::string::npos);
 }
 
 }  // namespace limn::edit_script_test

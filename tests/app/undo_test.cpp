@@ -212,17 +212,4 @@ TEST_CASE("undo: edits that were saved in the level's file are dropped, others a
     CHECK(world.get<const PointLight>(lamp).intensity == 3);
 }
 
-TEST_CASE("undo: it keeps at most a thousand edits") {
-    World world;
-    UndoStack stack;
-    const Entity lamp = world.create(bright(0));
-    for (int i = 1; i <= 1005; ++i) {
-        edit_intensity(world, stack, lamp, static_cast<float>(i));
-    }
-    CHECK(stack.undo_count() == UndoStack::kMaxEdits);
-    while (!stack.undo(world).empty()) {
-    }
-    CHECK(world.get<const PointLight>(lamp).intensity == 5);
-}
-
 }  // namespace limn

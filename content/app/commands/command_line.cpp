@@ -261,21 +261,22 @@ Command add_edit(CLI::App& program, EditOptions& options) {
         ->type_name("FILE");
     app->add_option("-o", options.out, "the edited level; default: prints what would change")
         ->type_name("FILE");
-    app->footer(
-        "An EDIT is one of\n"
-        "  set PATH = VALUE   as --set of `limn render`\n"
-        "  add NAME.COMPONENT, remove NAME.COMPONENT\n"
-        "  cut NAME, copy NAME, paste [PARENT], duplicate NAME, delete NAME\n"
-        "  undo, redo\n"
-        "where NAME and PARENT are entities. Whole entities take their children with them; what "
-        "is\n"
-        "cut stays where it is in the world until it is pasted, and after. An edit that fails "
-        "ends\n"
-        "the command, and nothing is written. The comments of the level's file are not kept.\n\n"
-        "Examples:\n"
-        "  limn edit pond \"set sun.transform.rotation = [215, -20, 0]\"\n"
-        "  limn edit pond \"duplicate pool\" \"delete pool\" undo -o my.level.json\n"
-        "  limn edit pond --script arrange.txt -o my.level.json");
+    app->footer("An EDIT is one of\n"
+                "  set PATH = VALUE   as --set of `limn render`\n"
+                "  add NAME.COMPONENT, remove NAME.COMPONENT\n"
+                "  cut NAME, copy NAME, paste [PARENT], duplicate NAME, delete NAME\n"
+                "  undo, redo\n"
+                "where NAME and PARENT are entities. Whole entities take their children with them; "
+                "cut and\n"
+                "paste keep the world transform. An edit that fails ends the command, and nothing "
+                "is written.\n"
+                "FILE is a new one in the level's folder if the level refers to files there; the "
+                "comments of\n"
+                "the level's file are not kept.\n\n"
+                "Examples:\n"
+                "  limn edit pond \"set sun.transform.rotation = [215, -20, 0]\"\n"
+                "  limn edit pond \"duplicate pool\" \"delete pool\" undo -o my.level.json\n"
+                "  limn edit pond --script arrange.txt -o my.level.json");
     return {app, [&options] { return run_edit(options); }};
 }
 

@@ -9,8 +9,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <string_view>
 
 namespace limn {
 namespace {
@@ -25,7 +27,8 @@ Result<std::vector<EditLine>> read_lines(const EditOptions& options) {
     if (!options.script.empty()) {
         const std::vector<std::byte> bytes = LIMN_TRY(read_file(options.script));
         const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        std::size_t begin = 0;
+        constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+        std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
         for (int number = 1; begin < text.size(); ++number) {
             const std::size_t end = std::min(text.find('\n', begin), text.size());
             lines.push_back(

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
@@ -147,25 +148,6 @@ Entity owner_of(const World& world, Entity entity) {
     return entity;
 }
 
-/// The components of an entity in a patch of a level; null if a level cannot refer to it. Copies
-/// are changed by an event at time 0.
-JsonValue* patched(
-    const World& world, JsonValue& entities, JsonValue& copies, Entity entity, const Name& name) {
-    if (!nearest_copy(world, parent_of(world, entity)).is_null()) {
-        return nullptr;
-    }
-    const Entity owner = owner_of(world, entity);
-    const Name* const outer = name_of(world, owner);
-    if (owner == entity) {
-        return is_copy(name) ? &member(copies, name.text) : &named(entities, name.text);
-    }
-    if (outer == nullptr || world.has<FromGltf>(owner)) {
-        return &named(entities, name.text);
-    }
-    return is_copy(name) ? nullptr
-                         : &member(member(named(entities, outer->text), "nodes"), name.text);
-}
-
 /// An entity and its children, as in a level.
 class CopiedTree {
   public:
@@ -255,11 +237,6 @@ const ComponentInfo& edited_info(const Edit& edit) {
     return edit.before.is_empty() ? edit.after.info() : edit.before.info();
 }
 
-std::string name_text(const World& world, Entity entity) {
-    const Name* const name = name_of(world, entity);
-    return name != nullptr ? name->text : std::string();
-}
-
 /// The value before its first edit.
 const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
     const auto same = [&](const Edit& other) {
@@ -269,97 +246,98 @@ const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
     return *std::find_if(edits.begin(), edits.end(), same);
 }
 
-/// Entities that the edits made, deleted and moved.
-struct TreeChanges {
-    std::vector<Entity> made;          ///< roots of subtrees
-    std::vector<std::string> deleted;  ///< names of roots
-    std::vector<Entity> moved;         ///< to another parent
-    std::unordered_set<Entity> own;    ///< all of the subtrees that were made or deleted
-};
-
-std::string root_name(const EditedTree& tree) {
-    for (const AnyComponent& component : tree.components.entities.front().components) {
-        if (&component.info() == &component_info<Name>()) {
-            return component.as<Name>().text;
-        }
-    }
-    return {};
+/// The changes of `entity`, added if there are none yet.
+JsonValue& changes_of(LevelEdits& edits, Entity entity) {
+    const auto found = std::ranges::find(edits.entities, entity, &LevelEdits::Change::entity);
+    return found != edits.entities.end()
+               ? found->components
+               : edits.entities.emplace_back(LevelEdits::Change{entity, json_object()}).components;
 }
 
-TreeChanges tree_changes(const World& world, std::span<const Edit> edits) {
-    TreeChanges changes;
-    for (const Edit& edit : edits) {
-        if (!edit.tree) {
-            continue;
-        }
-        const Entity root = edit.tree->entities.front();
-        if (!edit.tree->made) {
-            if (!changes.own.contains(root)) {
-                changes.deleted.push_back(root_name(*edit.tree));
-            }
-        } else if (world.alive(root) && !world.components_of(root).empty()) {
-            changes.made.push_back(root);
-        }
-        changes.own.insert(edit.tree->entities.begin(), edit.tree->entities.end());
+/// Where a level changes the components of an entity called `name`; null if it cannot refer to it.
+JsonValue* patched(
+    const World& world, LevelEdits& edits, Entity entity, const Name& name,
+    const BeforeEdits& before) {
+    if (!nearest_copy(world, parent_of(world, entity)).is_null()) {
+        return nullptr;
     }
-    for (const Edit& edit : edits) {
-        const bool moves = edit.part == LevelPart::Component && !edit.tree
-                           && &edited_info(edit) == &component_info<Parent>();
-        if (moves && !changes.own.contains(edit.entity)
-            && std::ranges::find(changes.moved, edit.entity) == changes.moved.end()) {
-            changes.moved.push_back(edit.entity);
-        }
+    if (before.parent(entity) != parent_of(world, entity)) {  // moved: nothing else changes it
+        return is_copy(name) ? nullptr : &changes_of(edits, entity);
     }
-    return changes;
+    const Entity owner = owner_of(world, entity);
+    if (owner == entity) {
+        return is_copy(name) ? &member(edits.copies, name.text) : &changes_of(edits, entity);
+    }
+    if (before.name(owner).empty() || world.has<FromGltf>(owner)) {
+        return &changes_of(edits, entity);
+    }
+    return is_copy(name) ? nullptr : &member(member(changes_of(edits, owner), "nodes"), name.text);
 }
 
-/// Writes what was made, and destroys by an event what was deleted. A patch can have children only
-/// in a root of the level: what was made elsewhere has to be moved in the file, as what was moved.
-void add_tree_changes(
-    World& world, const TreeChanges& changes, JsonValue& entities, JsonValue& destroyed,
-    LevelEdits& edits) {
-    const Hierarchy& tree = hierarchy(world);
-    std::vector<Entity> moved = changes.moved;
-    for (const Entity root : changes.made) {
+std::string move_text(const World& world, Entity entity, const BeforeEdits& before) {
+    const auto named = [&](Entity one) {
+        const std::string name = before.name(one);
+        return name.empty() ? "an entity without a name" : in_quotes(name);
+    };
+    const Entity parent = parent_of(world, entity);
+    return named(entity) + ' '
+           + (parent.is_null() ? "out of its parent's children"
+                               : "to the children of " + named(parent));
+}
+
+/// Adds what was made to "entities". A patch can have children only in a root of the level:
+/// elsewhere they have to be moved in the file, as what was moved. Returns comments for that.
+std::string
+add_made(World& world, const TreeEdits& trees, const BeforeEdits& before, JsonValue& entities) {
+    const std::unordered_set<Entity> made(trees.made.begin(), trees.made.end());
+    std::vector<Entity> moved = trees.moved;
+    for (const Entity root : trees.made) {
         const Entity parent = parent_of(world, root);
-        if (changes.own.contains(parent)) {
+        if (made.contains(parent)) {
             continue;  // written with it
         }
         const Name* const above = name_of(world, parent);
         const bool is_root = above != nullptr && parent_of(world, parent).is_null()
                              && !is_copy(*above) && !world.has<FromGltf>(parent);
-        JsonValue object = CopiedTree(world, tree, root).object_of(root);
-        if (!is_root) {
-            entities.items.push_back(std::move(object));
-            if (!parent.is_null()) {
-                moved.push_back(root);
-            }
+        JsonValue object = CopiedTree(world, hierarchy(world), root).object_of(root);
+        if (is_root) {
+            JsonValue& children = member(named(entities, before.name(parent)), "children");
+            children.kind = JsonKind::Array;
+            children.items.push_back(std::move(object));
             continue;
         }
-        JsonValue& children = member(named(entities, above->text), "children");
-        if (children.items.empty()) {
-            children = json_array();
-        }
-        children.items.push_back(std::move(object));
-    }
-    bool has_unnamed = false;
-    for (const std::string& name : changes.deleted) {
-        has_unnamed = has_unnamed || name.empty();
-        if (!name.empty()) {
-            destroyed.items.push_back(json_of(std::string_view(name)));
-        }
-    }
-    if (has_unnamed) {
-        edits.left_out.emplace_back(
-            "the entities deleted that have no name: delete them in the file");
-    }
-    for (const Entity entity : moved) {
-        const Entity parent = parent_of(world, entity);
-        edits.moves.push_back({name_text(world, entity), std::nullopt});
+        entities.items.push_back(std::move(object));
         if (!parent.is_null()) {
-            edits.moves.back().parent = name_text(world, parent);
+            moved.push_back(root);
         }
     }
+    std::string comments;
+    for (const Entity entity : moved) {
+        if (!made.contains(parent_of(world, entity)) || made.contains(entity)) {
+            comments += "  // move " + move_text(world, entity, before);
+        }
+    }
+    return comments;
+}
+
+/// The names of the roots of what was deleted.
+JsonValue destroyed_names(
+    const TreeEdits& trees, const BeforeEdits& before, std::vector<std::string>& left_out) {
+    const std::unordered_set<Entity> deleted(trees.deleted.begin(), trees.deleted.end());
+    JsonValue names = json_array();
+    for (const Entity entity : trees.deleted) {
+        if (deleted.contains(before.parent(entity))) {
+            continue;
+        }
+        const std::string name = before.name(entity);
+        if (!name.empty()) {
+            names.items.push_back(json_of(std::string_view(name)));
+        } else {
+            left_out.emplace_back(
+                "the deletion of an entity that has no name: delete it in the file");
+        }
+    }
+    return names;
 }
 
 }  // namespace
@@ -400,59 +378,170 @@ std::string edit_note(const World& world, Entity entity) {
                 : "its edits cannot be copied; edit the prefab or the repeat in the level's file");
 }
 
-LevelEdits level_edits(World& world, std::span<const Edit> edits) {
-    LevelEdits all;
-    JsonValue& patch = all.patch = json_object();
-    JsonValue entities = json_array();
-    JsonValue copies = json_object();
-    bool left_out = false;
-    const NameProvider names = make_name_provider(world);
-    const TreeChanges trees = tree_changes(world, edits);
+BeforeEdits::BeforeEdits(const World& world, std::span<const Edit> edits) : world_(world) {
+    const auto add_parent = [&](Entity entity, const AnyComponent& value) {
+        parents_.try_emplace(entity, value.is_empty() ? Entity{} : value.as<Parent>().entity);
+    };
     for (const Edit& edit : edits) {
-        if (edit.tree) {
+        if (edit.tree && !edit.tree->made) {
+            const EditedTree& tree = *edit.tree;
+            for (std::size_t i = 0; i < tree.entities.size(); ++i) {
+                for (const AnyComponent& value : tree.components.entities[i].components) {
+                    if (&value.info() == &component_info<Name>()) {
+                        names_.try_emplace(tree.entities[i], value.as<Name>().text);
+                    }
+                    if (&value.info() == &component_info<Parent>()) {
+                        parents_.try_emplace(
+                            tree.entities[i], tree.entities[value.as<Parent>().entity.index]);
+                    }
+                }
+            }
+        }
+        if (edit.tree || edit.part != LevelPart::Component) {
+            continue;
+        }
+        if (&edited_info(edit) == &component_info<Parent>()) {
+            add_parent(edit.entity, edit.before);
+        }
+        if (&edited_info(edit) == &component_info<Name>()) {
+            names_.try_emplace(
+                edit.entity, edit.before.is_empty() ? std::string() : edit.before.as<Name>().text);
+        }
+    }
+}
+
+std::string BeforeEdits::name(Entity entity) const {
+    const auto found = names_.find(entity);
+    const Name* const now = name_of(world_, entity);
+    return found != names_.end() ? found->second : now != nullptr ? now->text : std::string();
+}
+
+Entity BeforeEdits::parent(Entity entity) const {
+    const auto found = parents_.find(entity);
+    return found != parents_.end() ? found->second : parent_of(world_, entity);
+}
+
+TreeEdits tree_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before) {
+    TreeEdits trees;
+    std::unordered_set<Entity> made;
+    std::unordered_set<Entity> seen;
+    for (const Edit& edit : edits) {
+        if (!edit.tree) {
+            continue;
+        }
+        for (const Entity entity : edit.tree->entities) {
+            if (edit.tree->made) {
+                made.insert(entity);
+            }
+            if (!seen.insert(entity).second) {
+                continue;
+            }
+            if (!exists(world, entity) && !edit.tree->made) {
+                trees.deleted.push_back(entity);
+            }
+        }
+    }
+    for (const Edit& edit : edits) {
+        const bool moves = edit.part == LevelPart::Component && !edit.tree
+                           && &edited_info(edit) == &component_info<Parent>();
+        if (moves && exists(world, edit.entity) && !made.contains(edit.entity)
+            && before.parent(edit.entity) != parent_of(world, edit.entity)
+            && std::ranges::find(trees.moved, edit.entity) == trees.moved.end()) {
+            trees.moved.push_back(edit.entity);
+        }
+    }
+    // Made ones may have been moved below others that were made later.
+    const std::function<void(Entity)> add = [&](Entity entity) {
+        if (!exists(world, entity) || made.erase(entity) == 0) {
+            return;
+        }
+        add(parent_of(world, entity));
+        trees.made.push_back(entity);
+    };
+    for (const Edit& edit : edits) {
+        if (edit.tree && edit.tree->made) {
+            for (const Entity entity : edit.tree->entities) {
+                add(entity);
+            }
+        }
+    }
+    return trees;
+}
+
+LevelEdits level_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before) {
+    LevelEdits all;
+    all.patch = json_object();
+    all.copies = json_object();
+    NameProvider names = make_name_provider(world);
+    names.entity = [&](Entity entity) { return before.name(entity); };
+    std::unordered_set<Entity> made;
+    for (const Edit& edit : edits) {
+        if (edit.tree && edit.tree->made) {
+            made.insert(edit.tree->entities.begin(), edit.tree->entities.end());
+        }
+    }
+    const auto leave_out = [&](std::string what) {
+        if (std::ranges::find(all.left_out, what) == all.left_out.end()) {
+            all.left_out.push_back(std::move(what));
+        }
+    };
+    for (const Edit& edit : edits) {
+        const bool is_component = edit.part == LevelPart::Component;
+        if (edit.tree
+            || (is_component && (made.contains(edit.entity) || !exists(world, edit.entity)))) {
             continue;
         }
         const ComponentInfo& info = edited_info(edit);
-        if (edit.part == LevelPart::Component
-            && (trees.own.contains(edit.entity) || info.id == component_id<Parent>)) {
+        if (is_component && info.id == component_id<Parent>) {
+            continue;
+        }
+        if (is_component && info.id == component_id<Name>) {
+            leave_out(
+                "the new name of " + in_quotes(before.name(edit.entity))
+                + ": rename it in the file");
             continue;
         }
         const AnyComponent& first = first_edit_of(edits, edit).before;
-        const JsonValue before =
+        const JsonValue old =
             first.is_empty() ? json_object() : write_component(info, first.data(), names);
         const auto edited = [&](const void* now) {
-            return without_equal(write_component(info, now, names), before);
+            return without_equal(write_component(info, now, names), old);
         };
         switch (edit.part) {
-        case LevelPart::Component:
-            if (const Name* const name = name_of(world, edit.entity)) {
-                JsonValue value;
-                if (world.has(edit.entity, info.id)) {
-                    value = edited(AnyComponent::read(world, edit.entity, info).data());
-                } else if (is_copy(*name)) {
-                    all.left_out.push_back(
-                        info.name + " removed from " + in_quotes(name->text)
-                        + ": an event can only set fields of a copy");
-                    break;
-                }
-                if (JsonValue* const target =
-                        patched(world, entities, copies, edit.entity, *name)) {
-                    set_member(*target, info.name, std::move(value));
-                } else {
-                    left_out = true;
-                }
+        case LevelPart::Component: {
+            const Name name{before.name(edit.entity)};
+            if (name.text.empty()) {
+                leave_out("edits of entities without a name: name them in the file");
+                break;
+            }
+            JsonValue value;
+            if (world.has(edit.entity, info.id)) {
+                value = edited(AnyComponent::read(world, edit.entity, info).data());
+            } else if (first.is_empty()) {
+                break;  // added and removed again
+            } else if (is_copy(name)) {
+                leave_out(
+                    info.name + " removed from " + in_quotes(name.text)
+                    + ": an event can only set fields of a copy");
+                break;
+            }
+            if (JsonValue* const target = patched(world, all, edit.entity, name, before)) {
+                set_member(*target, info.name, std::move(value));
+            } else {
+                leave_out("edits of children of copies: a level cannot refer to those");
             }
             break;
+        }
         case LevelPart::Resource:
             if (const void* const now = world.find_resource(info.id)) {
-                set_member(member(patch, "resources"), info.name, edited(now));
+                set_member(member(all.patch, "resources"), info.name, edited(now));
             }
             break;
         case LevelPart::Material: {
             const auto* const assets = world.find_resource<Assets>();
             if (assets != nullptr && edit.material < assets->materials.size()) {
                 const Material& now = assets->materials[edit.material];
-                set_member(member(patch, "materials"), now.name, edited(&now));
+                set_member(member(all.patch, "materials"), now.name, edited(&now));
             }
             break;
         }
@@ -460,43 +549,43 @@ LevelEdits level_edits(World& world, std::span<const Edit> edits) {
             break;  // only in files
         }
     }
-    JsonValue destroyed = json_array();
-    add_tree_changes(world, trees, entities, destroyed, all);
-    if (left_out) {
-        all.left_out.emplace_back("edits of children of copies: a level cannot refer to those");
+    return all;
+}
+
+JsonValue entity_without_children(World& world, Entity entity) {
+    JsonValue object = CopiedTree(world, hierarchy(world), entity).object_of(entity);
+    std::erase_if(object.members, [](const JsonMember& m) { return m.key == "children"; });
+    return object;
+}
+
+std::string edits_as_json(World& world, std::span<const Edit> edits) {
+    const BeforeEdits before(world, edits);
+    LevelEdits all = level_edits(world, edits, before);
+    const TreeEdits trees = tree_edits(world, edits, before);
+    JsonValue entities = json_array();
+    for (LevelEdits::Change& change : all.entities) {
+        JsonValue& entity = named(entities, before.name(change.entity));
+        for (JsonMember& m : change.components.members) {
+            set_member(entity, m.key, std::move(m.value));
+        }
     }
+    const std::string comments = add_made(world, trees, before, entities);
+    JsonValue destroyed = destroyed_names(trees, before, all.left_out);
     if (!entities.items.empty()) {
-        set_member(patch, "entities", std::move(entities));
+        set_member(all.patch, "entities", std::move(entities));
     }
-    if (!copies.members.empty() || !destroyed.items.empty()) {
+    if (!all.copies.members.empty() || !destroyed.items.empty()) {
         JsonValue event = json_object();
         set_member(event, "at", json_of(0.0));
-        if (!copies.members.empty()) {
-            set_member(event, "set", std::move(copies));
+        if (!all.copies.members.empty()) {
+            set_member(event, "set", std::move(all.copies));
         }
         if (!destroyed.items.empty()) {
             set_member(event, "destroy", std::move(destroyed));
         }
-        set_member(patch, "events", json_array({std::move(event)}));
+        set_member(all.patch, "events", json_array({std::move(event)}));
     }
-    return all;
-}
-
-std::string describe_move(const LevelEdits::Move& move) {
-    const auto named = [](const std::string& name) {
-        return name.empty() ? "an entity without a name" : in_quotes(name);
-    };
-    return named(move.entity) + ' '
-           + (move.parent ? "to the children of " + named(*move.parent)
-                          : "out of its parent's children");
-}
-
-std::string edits_as_json(World& world, std::span<const Edit> edits) {
-    const LevelEdits all = level_edits(world, edits);
-    std::string text = write_json(all.patch);
-    for (const LevelEdits::Move& move : all.moves) {
-        text += "  // move " + describe_move(move);
-    }
+    std::string text = write_json(all.patch) + comments;
     for (const std::string& what : all.left_out) {
         text += "  // without " + what;
     }

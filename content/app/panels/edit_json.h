@@ -5,9 +5,9 @@
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 
-#include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace limn {
@@ -30,28 +30,51 @@ component_as_json(const World& world, const ComponentInfo& info, const void* val
 /// out, or how it writes those of a copy made by `repeat`. Empty for other entities.
 [[nodiscard]] std::string edit_note(const World& world, Entity entity);
 
-/// The edited fields of components, resources and materials with their current values, as a patch
-/// of the level's file, in which "entities" is an array. Children are in the "nodes" of their
-/// outermost ancestor, copies made by `repeat` in an event, which also destroys what was deleted;
-/// removed components are null. What was made is below its parent if that is a root, or else moved.
-struct LevelEdits {
-    /// To another parent, which a patch cannot say.
-    struct Move {
-        std::string entity;                 ///< its name, or ""
-        std::optional<std::string> parent;  ///< likewise; none: it is a root now
-    };
+/// Names and parents of entities before the edits.
+class BeforeEdits {
+  public:
+    BeforeEdits(const World& world, std::span<const Edit> edits);
+    [[nodiscard]] std::string name(Entity entity) const;  ///< "" without one
+    [[nodiscard]] Entity parent(Entity entity) const;
 
-    JsonValue patch;
-    std::vector<Move> moves;
-    std::vector<std::string> left_out;  ///< edits of what a level cannot refer to: "edits of ..."
+  private:
+    const World& world_;
+    std::unordered_map<Entity, std::string> names_;
+    std::unordered_map<Entity, Entity> parents_;
 };
 
-[[nodiscard]] LevelEdits level_edits(World& world, std::span<const Edit> edits);
+/// Entities that the edits made, deleted or moved, and that are still so.
+struct TreeEdits {
+    std::vector<Entity> made;     ///< living; parents before their children
+    std::vector<Entity> deleted;  ///< of the level, with all below; likewise
+    std::vector<Entity> moved;    ///< living, of the level, to another parent
+};
+[[nodiscard]] TreeEdits
+tree_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before);
 
-/// `"lamp" to the children of "post"`
-[[nodiscard]] std::string describe_move(const LevelEdits::Move& move);
+/// The edited fields of what the level defines, with their current values, as changes of its file.
+/// A child is in the "nodes" of its outermost ancestor if a file or a prefab created it; copies
+/// made by `repeat` are changed by an event. Removed components are null.
+struct LevelEdits {
+    struct Change {
+        Entity entity;
+        JsonValue components;
+    };
 
-/// The patch; comments say what was left out, and what to move in the file.
+    std::vector<Change> entities;
+    JsonValue patch;                    ///< "resources", "materials"
+    JsonValue copies;                   ///< what an event at time 0 sets
+    std::vector<std::string> left_out;  ///< "edits of ...": what a level cannot say
+};
+[[nodiscard]] LevelEdits
+level_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before);
+
+/// An entity as in a level, without its children.
+[[nodiscard]] JsonValue entity_without_children(World& world, Entity entity);
+
+/// A patch of the level's file, in which "entities" is an array. What was made is below its parent
+/// if that is a root, what was deleted is destroyed by an event. Comments say what was left out,
+/// and what to move in the file.
 [[nodiscard]] std::string edits_as_json(World& world, std::span<const Edit> edits);
 
 }  // namespace limn

@@ -6,13 +6,17 @@
 #include "content/load/level/level_load.h"
 #include "content/load/level/level_patch.h"
 #include "ecs/base/text.h"
+#include "ecs/components/gltf_source.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 // Techniques: engine.editor-inspector
@@ -47,73 +51,206 @@ JsonValue take_member(JsonValue& object, std::string_view key) {
     return taken;
 }
 
-void append(JsonValue& array, JsonValue items) {
-    array.items.insert(
-        array.items.end(), std::make_move_iterator(items.items.begin()),
-        std::make_move_iterator(items.items.end()));
-}
+/// An entity of the level's file, without its children.
+struct FileEntity {
+    JsonValue json;
+    int parent = -1;  ///< index; -1: none
+    std::string name;
+    bool is_gone = false;
+};
 
-/// Applies an entity of LevelEdits to that of the file, or adds it.
-Status add_entity(JsonValue& entities, JsonValue edited, const JsonLocation& location) {
-    const std::string name = edited["name"].text;
-    JsonValue* const node = name.empty() ? nullptr : find_entity_json(entities, name);
-    if (node == nullptr) {
-        entities.items.push_back(std::move(edited));
+/// The entities of a level as a list, in which they can be moved.
+class FileEntities {
+  public:
+    FileEntities(
+        JsonValue entities, World& world, const BeforeEdits& before, const TreeEdits& trees,
+        EditedLevel& saved)
+        : world_(world), before_(before), saved_(saved) {
+        flatten(std::move(entities), -1);
+        listed_ = list_.size();
+        for (const Entity entity : trees.made) {
+            add_made(entity);
+        }
+        for (const Entity entity : trees.moved) {
+            move(entity);
+        }
+        const std::unordered_set<Entity> deleted(trees.deleted.begin(), trees.deleted.end());
+        for (const Entity entity : trees.deleted) {
+            if (const int at = find(entity); at >= 0) {
+                list_[index(at)].is_gone = true;
+            } else if (!deleted.contains(before_.parent(entity))) {
+                leave_out("the deletion of " + quoted(before_.name(entity)));
+            }
+        }
+    }
+
+    Status change(LevelEdits::Change change, const JsonLocation& location) {
+        const int at = find(change.entity);
+        if (at < 0) {
+            leave_out("edits of " + quoted(before_.name(change.entity)));
+            return Done{};
+        }
+        JsonValue& json = list_[index(at)].json;
+        if (unmoved_.contains(change.entity)) {  // relative to the parent that it does not get
+            take_member(change.components, "transform");
+        }
+        LIMN_TRY(patch_level(json, change.components, location));
+        for (const JsonMember& member : change.components.members) {
+            const bool is_inherited = json.find("prefab") != nullptr;
+            if (is_inherited && member.value.kind == JsonKind::Null
+                && json.find(member.key) == nullptr) {
+                json.members.push_back(member);  // only a null removes a prefab's component
+            }
+        }
         return Done{};
     }
-    JsonValue children = take_member(edited, "children");
-    take_member(edited, "name");
-    LIMN_TRY(patch_level(*node, edited, location));
-    if (node->find("prefab") != nullptr) {  // whose components only a null removes
-        for (const JsonMember& member : edited.members) {
-            if (member.value.kind == JsonKind::Null && node->find(member.key) == nullptr) {
-                node->members.push_back(member);
+
+    /// The entities of the new file. What was deleted and is referred to in `level` remains, and is
+    /// added to `destroyed`.
+    JsonValue build(const JsonValue& level, JsonValue& destroyed) {
+        for (FileEntity& entity : list_) {
+            const auto is_other = [&](const FileEntity& other) {
+                return &other != &entity && !other.is_gone && other.name == entity.name;
+            };
+            const bool is_root =
+                entity.is_gone && (entity.parent < 0 || !list_[index(entity.parent)].is_gone);
+            const auto refers = [&](const FileEntity& other) {
+                return !other.is_gone && refers_to(other.json, entity);
+            };
+            if (is_root && (refers_to(level, entity) || std::ranges::any_of(list_, refers))
+                && std::ranges::none_of(list_, is_other)) {
+                destroyed.items.push_back(json_of(std::string_view(entity.name)));
+                keep(entity);
+            }
+        }
+        std::vector<std::vector<int>> children(list_.size() + 1);
+        for (std::size_t i = 0; i < list_.size(); ++i) {
+            if (!list_[i].is_gone) {
+                children[index(list_[i].parent + 1)].push_back(static_cast<int>(i));
+            }
+        }
+        return build_children(children, -1);
+    }
+
+  private:
+    static std::size_t index(int at) { return static_cast<std::size_t>(at); }
+    static std::string quoted(const std::string& name) {
+        return name.empty() ? "an entity without a name" : in_quotes(name);
+    }
+    void leave_out(const std::string& what) {
+        saved_.left_out.push_back(what + ": the level's file does not list it");
+    }
+
+    void flatten(JsonValue entities, int parent) {
+        for (JsonValue& json : entities.items) {
+            JsonValue children = take_member(json, "children");
+            std::string name = json["name"].text;
+            list_.push_back({std::move(json), parent, std::move(name)});
+            parents_.push_back(parent);
+            flatten(std::move(children), static_cast<int>(list_.size()) - 1);
+        }
+    }
+
+    /// The entity as it was before the edits, by its name and its parents; -1 if it is not listed.
+    [[nodiscard]] int find(Entity entity) const {
+        if (const auto made = made_.find(entity); made != made_.end()) {
+            return made->second;
+        }
+        const std::string name = before_.name(entity);
+        const Entity parent = before_.parent(entity);
+        const int above = parent.is_null() ? -1 : find(parent);
+        for (std::size_t i = 0; i < listed_ && !name.empty(); ++i) {
+            if (list_[i].name == name && (parent.is_null() || above >= 0) && parents_[i] == above) {
+                return static_cast<int>(i);
+            }
+        }
+        return -1;
+    }
+
+    void add_made(Entity entity) {
+        const Entity parent = parent_of(world_, entity);
+        const int above = parent.is_null() ? -1 : find(parent);
+        if (world_.has<FromGltf>(entity)) {
+            return;  // comes with the file of an entity above it
+        }
+        JsonValue json = entity_without_children(world_, entity);
+        const std::string name = json["name"].text;
+        if (!parent.is_null() && above < 0) {
+            leave_out(quoted(name) + ", whose parent is " + quoted(before_.name(parent)));
+            return;
+        }
+        made_[entity] = static_cast<int>(list_.size());
+        list_.push_back({std::move(json), above, name});
+        parents_.push_back(above);
+    }
+
+    void move(Entity entity) {
+        const int at = find(entity);
+        const Entity parent = parent_of(world_, entity);
+        const int above = parent.is_null() ? -1 : find(parent);
+        if (at < 0 || (!parent.is_null() && above < 0)) {
+            leave_out("the move of " + quoted(before_.name(entity)));
+            unmoved_.insert(entity);
+            return;
+        }
+        list_[index(at)].parent = above;
+        // Below itself, if the move of one between them could not be saved.
+        for (int above_it = above; above_it >= 0; above_it = list_[index(above_it)].parent) {
+            if (above_it == at) {
+                list_[index(at)].parent = parents_[index(at)];
+                leave_out("the move of " + quoted(before_.name(entity)));
+                unmoved_.insert(entity);
+                return;
             }
         }
     }
-    if (!children.items.empty()) {
-        append(array_member(*node, "children"), std::move(children));
-    }
-    return Done{};
-}
 
-/// Removes the entity from these or their children, and returns it.
-std::optional<JsonValue> take_entity(JsonValue& entities, std::string_view name) {
-    for (auto node = entities.items.begin(); node != entities.items.end(); ++node) {
-        if ((*node)["name"].text == name) {
-            JsonValue taken = std::move(*node);
-            entities.items.erase(node);
-            return taken;
+    /// Whether a name in the level, other than those of entities, is this one.
+    static bool refers_to(const JsonValue& json, const FileEntity& entity) {
+        if (json.kind == JsonKind::String) {
+            return json.text == entity.name;
         }
-        if (node->find("children") == nullptr) {
-            continue;
-        }
-        JsonValue& children = array_member(*node, "children");
-        if (std::optional<JsonValue> taken = take_entity(children, name)) {
-            if (children.items.empty()) {
-                take_member(*node, "children");
+        return std::ranges::any_of(
+                   json.items, [&](const JsonValue& item) { return refers_to(item, entity); })
+               || std::ranges::any_of(json.members, [&](const JsonMember& member) {
+                      return member.key == entity.name
+                             || (member.key != "name" && refers_to(member.value, entity));
+                  });
+    }
+
+    /// Not gone, with all below it.
+    void keep(FileEntity& entity) {
+        entity.is_gone = false;
+        const int at = static_cast<int>(&entity - list_.data());
+        for (FileEntity& below : list_) {
+            if (below.parent == at && below.is_gone) {
+                keep(below);
             }
-            return taken;
         }
     }
-    return std::nullopt;
-}
 
-/// False if the file has no such entities.
-bool move_entity(JsonValue& entities, const LevelEdits::Move& move) {
-    const bool has_both =
-        !move.entity.empty() && find_entity_json(entities, move.entity) != nullptr
-        && (!move.parent
-            || (!move.parent->empty() && find_entity_json(entities, *move.parent) != nullptr));
-    if (!has_both) {
-        return false;
+    JsonValue build_children(const std::vector<std::vector<int>>& children, int parent) {
+        JsonValue all = json_array();
+        for (const int child : children[index(parent + 1)]) {
+            JsonValue json = std::move(list_[index(child)].json);
+            JsonValue below = build_children(children, child);
+            if (!below.items.empty()) {
+                json.members.push_back({"children", {}, std::move(below)});
+            }
+            all.items.push_back(std::move(json));
+        }
+        return all;
     }
-    std::optional<JsonValue> taken = take_entity(entities, move.entity);
-    JsonValue* const parent = move.parent ? find_entity_json(entities, *move.parent) : nullptr;
-    JsonValue& list = parent != nullptr ? array_member(*parent, "children") : entities;
-    list.items.push_back(*std::move(taken));
-    return true;
-}
+
+    World& world_;
+    const BeforeEdits& before_;
+    EditedLevel& saved_;
+    std::vector<FileEntity> list_;
+    std::vector<int> parents_;  // of each, before moves
+    std::size_t listed_ = 0;    // those of the file come first
+    std::unordered_map<Entity, int> made_;
+    std::unordered_set<Entity> unmoved_;  // whose move could not be saved
+};
 
 /// A file of the folder to which the JSON refers; "" if there is none.
 std::string file_reference(const JsonValue& json, const std::filesystem::path& folder) {
@@ -155,25 +292,27 @@ Result<EditedLevel> edited_level(
     if (!path.ends_with(kEnding)) {
         return fail("{}: found a model, expected a level: edits are saved as a level", path);
     }
+    if (!out.ends_with(kEnding)) {
+        return fail("{}: found another ending, expected {}", out, kEnding);
+    }
+    std::error_code ignored;
+    if (std::filesystem::equivalent(path, out, ignored)) {
+        return fail("{}: found the level itself, expected a new file", out);
+    }
     JsonValue level = LIMN_TRY(load_json(path));
     LIMN_TRY(expect_same_folder(level, path, out));
     const JsonLocation location{path, ""};
-    LevelEdits all = level_edits(world, edits);
+    const BeforeEdits before(world, edits);
+    LevelEdits all = level_edits(world, edits, before);
     EditedLevel saved;
     saved.left_out = std::move(all.left_out);
 
-    JsonValue edited = take_member(all.patch, "entities");
-    for (JsonValue& entity : edited.items) {
-        LIMN_TRY(add_entity(array_member(level, "entities"), std::move(entity), location));
-    }
-    for (const LevelEdits::Move& move : all.moves) {
-        if (!move_entity(array_member(level, "entities"), move)) {
-            saved.left_out.push_back(
-                "the move of " + describe_move(move) + ": the level's file does not list both");
-        }
-    }
-    if (JsonValue events = take_member(all.patch, "events"); !events.items.empty()) {
-        append(array_member(level, "events"), std::move(events));
+    JsonValue listed = json_array();
+    std::swap(listed.items, array_member(level, "entities").items);
+    FileEntities entities(
+        std::move(listed), world, before, tree_edits(world, edits, before), saved);
+    for (LevelEdits::Change& change : all.entities) {
+        LIMN_TRY(entities.change(std::move(change), location));
     }
     JsonValue materials = take_member(all.patch, "materials");
     std::erase_if(materials.members, [&](const JsonMember& material) {
@@ -189,11 +328,24 @@ Result<EditedLevel> edited_level(
         all.patch.members.push_back({"materials", {}, std::move(materials)});
     }
     LIMN_TRY(patch_level(level, all.patch, location));
+
+    JsonValue destroyed = json_array();
+    array_member(level, "entities").items = entities.build(level, destroyed).items;
+    JsonValue event = json_object({{"at", {}, json_of(0.0)}});
+    if (!all.copies.members.empty()) {
+        event.members.push_back({"set", {}, std::move(all.copies)});
+    }
+    if (!destroyed.items.empty()) {
+        event.members.push_back({"destroy", {}, std::move(destroyed)});
+    }
+    if (event.members.size() > 1) {
+        array_member(level, "events").items.push_back(std::move(event));
+    }
     saved.text = write_json(level) + '\n';
     LIMN_TRY(include_files(level, path, {}));
     const Result<Level> parsed = parse_level(write_json(level), out);
     if (!parsed) {
-        return fail("{}; nothing was saved", parsed.error().message);
+        return fail("the edited level would be no level: {}", parsed.error().message);
     }
     return saved;
 }

@@ -7,11 +7,13 @@
 #include "ecs/base/text.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/hierarchy.h"
 #include "ecs/reflect.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -49,6 +51,17 @@ Result<Entity> find_one(const World& world, std::string_view name) {
     return found.front();
 }
 
+/// Fails for what the file says in another way.
+Status expect_own_fields(const ComponentInfo& info) {
+    if (info.id == component_id<Parent>) {
+        return fail("found the component parent, expected cut and paste");
+    }
+    if (info.id == component_id<Name>) {
+        return fail("found the component name, which others refer to: rename it in the file");
+    }
+    return Done{};
+}
+
 /// What a set changes: the component of each entity, or one resource or material.
 std::vector<Edit> read_targets(const World& world, const SetTarget& target) {
     std::vector<Edit> edits(std::max<std::size_t>(target.entities.size(), 1));
@@ -56,7 +69,6 @@ std::vector<Edit> read_targets(const World& world, const SetTarget& target) {
         Edit& edit = edits[i];
         edit.part = target.part;
         edit.material = target.material;
-        edit.joined = i > 0;
         switch (target.part) {
         case LevelPart::Component:
             edit.entity = target.entities[i];
@@ -86,12 +98,18 @@ Result<std::string> set_field_of(World& world, UndoStack& undo, std::string_view
     }
     const std::string_view path = trimmed(rest.substr(0, equals));
     const SetTarget target = LIMN_TRY(find_set_target(world, path));
+    LIMN_TRY(expect_own_fields(*target.info));
     std::vector<Edit> edits = read_targets(world, target);
     LIMN_TRY(set_value(world, path, trimmed(rest.substr(equals + 1))));
     std::vector<Edit> after = read_targets(world, target);
+    bool joined = false;
     for (std::size_t i = 0; i < edits.size(); ++i) {
+        if (edits[i].before.is_empty() && after[i].before.is_empty()) {
+            continue;  // an entity of the name that lacks the component
+        }
         edits[i].label = path;
         edits[i].after = std::move(after[i].before);
+        edits[i].joined = std::exchange(joined, true);
         undo.record(std::move(edits[i]));
     }
     return std::string(path);
@@ -111,6 +129,7 @@ Result<std::string> add_or_remove(World& world, UndoStack& undo, std::string_vie
             "found the component {}, expected one of `limn components`{}", in_quotes(name),
             component_suggestion(name));
     }
+    LIMN_TRY(expect_own_fields(*info));
     edit.before = AnyComponent::read(world, edit.entity, *info);
     if (edit.before.is_empty() != adds) {
         return fail(

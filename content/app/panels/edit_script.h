@@ -12,9 +12,9 @@ namespace limn {
 class World;
 
 /// The inspector's edits as text, without a window (engine.editor-inspector): `limn edit`. Names
-/// are those of entities; one that several have is an error.
+/// are those of entities; one that several have is an error, except for set.
 ///
-///     set lamp.point_light.intensity = 20  as --set (set_value.h)
+///     set lamp.point_light.intensity = 20  as --set (set_value.h), for all entities of the name
 ///     add lamp.spin                        a component, with defaults
 ///     remove lamp.spin
 ///     cut lamp                             makes it a root, which the next paste moves

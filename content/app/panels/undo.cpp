@@ -139,9 +139,6 @@ void UndoStack::record(Edit edit) {
     ++revision_;
     edits_.resize(done_);
     edits_.push_back(std::move(edit));
-    if (edits_.size() > kMaxEdits) {
-        edits_.erase(edits_.begin());
-    }
     done_ = edits_.size();
 }
 

@@ -42,8 +42,6 @@ struct Edit {
 
 class UndoStack {
   public:
-    static constexpr std::size_t kMaxEdits = 1000;  ///< older ones are dropped
-
     /// Records an edit already applied. Clears the redo history.
     void record(Edit edit);
     /// Records an edit already applied, of what the last edit changed: that one's final value is

@@ -150,7 +150,9 @@ void Player::save_edits() {
         return;
     }
     edited_path_ = path;
-    inspector_.note_saved();
+    if (level->left_out.empty()) {
+        inspector_.note_saved();
+    }
     for (const std::string& what : level->left_out) {
         log_warn("{}: saved without {}", path, what);
         hud_->toast("saved without " + what, ToastKind::Bad);

@@ -204,7 +204,7 @@ void Player::handle_key(const KeyPress& press) {
             leave_.accept();
         } else if (press.key == GLFW_KEY_ESCAPE || press.key == GLFW_KEY_N) {
             leave_.stay();
-        } else if (press.key == GLFW_KEY_S) {
+        } else if (press.key == GLFW_KEY_S && !press.repeated) {
             save_edits();
         }
         return;
