@@ -20,6 +20,7 @@ using Matrix4 = std::array<std::array<double, 4>, 4>;
 constexpr std::size_t kNeighbors = 4;  ///< that a hidden marker follows
 constexpr int kSweeps = 32;            ///< of Jacobi's method, far more than 4 x 4 needs
 constexpr double kMinSpread = 1e-10;  ///< of points in their second direction, relative and squared
+constexpr double kSeenSpread = 2.5e-3;  ///< likewise, of the markers of a head that are seen
 
 /// Rotates rows and columns p and q of a symmetric matrix so that element (p, q) is 0.
 void rotate(Matrix4& m, Matrix4& vectors, std::size_t p, std::size_t q) {
@@ -76,8 +77,9 @@ MarkerDVec3 mean_of(std::span<const Vec3> points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Whether points are collinear or coincide.
-bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean) {
+/// Whether points are collinear or coincide: their spread in the second direction, relative and
+/// squared, is at most `spread`.
+bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean, double spread = kMinSpread) {
     MarkerDVec3 farthest(0);
     for (const Vec3& p : points) {
         const MarkerDVec3 out = MarkerDVec3(p) - mean;
@@ -89,7 +91,7 @@ bool is_line(std::span<const Vec3> points, const MarkerDVec3& mean) {
         const MarkerDVec3 across = glm::cross(MarkerDVec3(p) - mean, farthest);
         wide = std::max(wide, glm::dot(across, across));
     }
-    return !(wide > kMinSpread * size * size);
+    return !(wide > spread * size * size);
 }
 
 /// The visible markers that are nearest at rest, except the marker itself.
@@ -252,7 +254,11 @@ Result<std::vector<Affine>> stabilize_head(
                 now.push_back(p);
             }
         }
-        const Result<Affine> fit = fit_rigid(visible, now);
+        // Nearly on a line, noise of the markers would turn the head by degrees.
+        const bool is_wide =
+            now.size() == head.size() || !is_line(visible, mean_of(visible), kSeenSpread);
+        const Result<Affine> fit =
+            is_wide ? fit_rigid(visible, now) : Result<Affine>(fail("found markers on a line"));
         is_seen.push_back(fit.ok());
         heads[f] = fit ? *fit : Affine{};
     }

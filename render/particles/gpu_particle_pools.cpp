@@ -148,7 +148,7 @@ bool has_balls(const ParticleBalls* settings, const GpuParticlePool& pool) {
 
 constexpr std::size_t kAllSteps = std::numeric_limits<std::size_t>::max();
 
-/// Of a paced frame: a pool that is behind catches up, however many steps each frame has.
+/// Of a paced frame: more than it adds, so that a pool that is behind catches up.
 std::size_t max_ball_steps(const GpuParticles& particles, const GpuParticlePool& pool) {
     constexpr std::size_t kFew = 16;  // by eye
     const bool starts_over = pool.seen == 0 || pool.seen > particles.step;
@@ -390,17 +390,22 @@ void GpuParticlePools::add(
     }
     GpuParticlePool& pool = *found;
     const std::uint64_t window = particles.clock.born - particles.oldest();
-    // A capacity below the number of particles takes effect when enough of them have died.
-    const auto slots =
-        static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
+    // A capacity below the number of particles takes effect once, when enough of them have died.
+    const std::uint64_t wanted = std::max(emitter.capacity, 1u);
+    const auto slots = static_cast<std::uint32_t>(
+        window <= wanted ? wanted : std::max<std::uint64_t>(pool.capacity, window));
     const std::uint64_t first_kept = particles.step - particles.kept().size();
-    if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step || pool.done < first_kept
+    if (pool.capacity != slots || pool.done > particles.step || pool.done < first_kept
         || stride < pool.stride) {
+        const std::uint64_t seen = pool.seen;
         make_buffers(slots, pool);  // all recorded steps are simulated again
+        pool.seen = seen;
     }
     pool.stride = stride;
     const std::size_t max_steps =
-        paced && has_balls(balls, pool) ? max_ball_steps(particles, pool) : kAllSteps;
+        (paced || frame.warm_up) && has_balls(balls, pool) && balls->radius > 0 && !pool.closed_form
+            ? max_ball_steps(particles, pool)
+            : kAllSteps;
     pool.steps.upload(
         *frame.ring,
         pack_particle_steps(

@@ -33,7 +33,8 @@ class World;
 //
 // Steps of balls that bump into each other take dozens of dispatches each. In a window
 // (FrameRequest::paced) those of a pool that starts over are spread over frames: it shows its past
-// in fast motion until it has caught up, and then what it would show if it had never been behind.
+// in fast motion until it has caught up, and then, if none of its balls has died meanwhile, the
+// same bits as if it had never been behind.
 
 /// Layout of the texels of steps.
 struct ParticleStepTexels {

@@ -12,7 +12,7 @@
 #include "lib/light_at.glsl"
 #include "lib/single_lights.glsl"
 
-layout(location = 0) out vec3 diffuse;   // of further lights; still to be multiplied by the base color map
+layout(location = 0) out vec3 diffuse;   // of further lights; still to be multiplied by the base color map and the dress
 layout(location = 1) out vec3 specular;
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;

@@ -14,7 +14,7 @@ class World;
 /// Inputs of a deformed instance; valid until the world changes.
 struct DeformSource {
     const SkinData* skin = nullptr;        ///< null: not skinned
-    const Pose* pose = nullptr;            ///< contains the first `joint_count` joints of the skin
+    const Pose* pose = nullptr;            ///< with all joints of the skin unless wanted_joints > 0
     const MorphWeights* morphs = nullptr;  ///< null: no morph targets
     const DeformerState* deformers = nullptr;      ///< of the mesh itself; null: none
     const SurfaceBindingState* surface = nullptr;  ///< likewise, if it follows patches

@@ -20,8 +20,9 @@ namespace limn {
 [[nodiscard]] Vec3 axis_of_cone(std::span<const Vec3> directions);
 
 /// Fills one unit normal per position: the mean by area, which gives way to the axis of the cone as
-/// a triangle turns away from it, without a jump. Where no direction is faced by all triangles,
-/// as where two sides of a fold touch, the mean is kept. `corners`: three per triangle.
+/// a triangle turns away from it, without a jump unless it collapses. Where no direction is faced
+/// by all triangles, as where two sides of a fold touch, the mean is kept. `corners`: three per
+/// triangle.
 void make_patch_normals(
     std::span<const Vec3> positions, std::span<const std::uint32_t> corners,
     std::vector<Vec3>& normals);

@@ -50,7 +50,7 @@ TEST_CASE("cli: without arguments it prints a short help") {
     CHECK(run.exit_code == 0);
     CHECK(run.out.find("render") != std::string::npos);
     CHECK(run.out.find("components") != std::string::npos);
-    CHECK(count_lines(run.out) < 30);
+    CHECK(count_lines(run.out) < 32);
     CHECK(run.err.empty());
 }
 

@@ -179,9 +179,10 @@ TEST_CASE(
         for (const char* const line : script) {
             level.run(line);
         }
-        CAPTURE(script.back());
+        CAPTURE(std::string(script.back()));
         const EditedLevel saved = level.save();
-        CHECK(saved.left_out.empty());
+        CHECK_MESSAGE(
+            saved.left_out.empty(), (saved.left_out.empty() ? "" : saved.left_out.front()));
         const std::string file = level.folder.file("out.level.json");
         REQUIRE(write_file(file, saved.text).ok());
         const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);

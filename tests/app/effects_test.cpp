@@ -51,7 +51,8 @@ std::vector<EffectFile> effect_files() {
         CHECK(json->find("title") != nullptr);
         const JsonValue* const prefabs = json->find("prefabs");
         if (prefabs == nullptr) {
-            continue;  // only materials and meshes
+            CHECK(name == "townspeople.effect.json");  // only materials and meshes
+            continue;
         }
         EffectFile& file = files.emplace_back(EffectFile{name, {}});
         for (const JsonMember& member : prefabs->members) {

@@ -163,9 +163,7 @@ TEST_CASE("subtree edits: as JSON, what was made is below its root, what was del
         != std::string::npos);
     const Entity nameless = level.world.create(Transform{});
     REQUIRE(level.editor.remove(level.world, level.undo, nameless).ok());
-    CHECK(
-        edits_as_json(level.world, level.undo.done()).find("that have no name")
-        != std::string::npos);
+    CHECK(edits_as_json(level.world, level.undo.done()).find("has no name") != std::string::npos);
     // Undone, nothing is left of them.
     while (!level.undo.undo(level.world).empty()) {
     }

@@ -751,6 +751,9 @@ int run_command_line(int argc, char** argv) {
         const auto asked = std::ranges::find_if(commands, [&](const Command& command) {
             return argc > 2 && command.app->get_name() == argv[2];
         });
+        if (argc > 2 && explain_unknown_command(argv[2], commands)) {
+            return kWrongUsage;
+        }
         fmt::print("{}", asked == commands.end() ? program.help() : asked->app->help("limn"));
         return kDone;
     }

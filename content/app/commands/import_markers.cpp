@@ -58,7 +58,7 @@ Result<std::string> write_performance(
         markers.shapes.size(), largest, clip.times.back());
 }
 
-/// The mean of the channels of a sound in any format.
+/// The mean of the first two channels of a sound in any format.
 Result<Recording> load_one_channel(const std::string& path) {
     const SoundData sound = LIMN_TRY(load_sound(path));
     const auto channels = static_cast<std::size_t>(sound.channels);

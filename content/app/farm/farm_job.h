@@ -53,7 +53,7 @@ struct FarmJob {
     std::string film;  ///< made of the frames at the end, relative to the job; empty: none
     FilmSettings film_settings;  ///< of that
     bool scene_sound = false;    ///< its sound is the scene's own, from 0 s on
-    bool whole_sound = false;    ///< of which nothing is heard after what is kept
+    bool whole_sound = false;    ///< the kept sound reaches the end of the scene's sounds
     FarmScheduler scheduler = FarmScheduler::Local;
     std::vector<std::string> hosts;  ///< of Parallel: for ssh, ":" is this machine
     std::string partition;           ///< of Slurm; empty: its default

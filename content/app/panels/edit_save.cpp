@@ -74,6 +74,9 @@ class FileEntities {
         for (const Entity entity : trees.moved) {
             move(entity);
         }
+        for (const Entity entity : trees.moved) {
+            check_move(entity);
+        }
         const std::unordered_set<Entity> deleted(trees.deleted.begin(), trees.deleted.end());
         for (const Entity entity : trees.deleted) {
             if (const int at = find(entity); at >= 0) {
@@ -194,14 +197,24 @@ class FileEntities {
             return;
         }
         list_[index(at)].parent = above;
-        // Below itself, if the move of one between them could not be saved.
-        for (int above_it = above; above_it >= 0; above_it = list_[index(above_it)].parent) {
-            if (above_it == at) {
-                list_[index(at)].parent = parents_[index(at)];
-                leave_out("the move of " + quoted(before_.name(entity)));
-                unmoved_.insert(entity);
-                return;
-            }
+    }
+
+    /// An entity that would be below itself, since the move of one between them could not be saved,
+    /// stays where it was.
+    void check_move(Entity entity) {
+        const int at = find(entity);
+        if (at < 0) {
+            return;
+        }
+        std::size_t steps = 0;
+        int above = list_[index(at)].parent;
+        while (above >= 0 && above != at && ++steps < list_.size()) {
+            above = list_[index(above)].parent;
+        }
+        if (above == at) {
+            list_[index(at)].parent = parents_[index(at)];
+            leave_out("the move of " + quoted(before_.name(entity)));
+            unmoved_.insert(entity);
         }
     }
 

@@ -293,9 +293,7 @@ class AnimationBuilder {
                     node.parent < 0 ? 0 : scene_.joints[static_cast<std::size_t>(node.parent)];
                 scene_.joints[i] = static_cast<std::int32_t>(scene_.skeleton.joints.size());
                 // Views list joints, and poses refer to them, by name.
-                const std::string name =
-                    !node.name.empty() ? node.name
-                                       : fmt::format("joint {}", scene_.skeleton.joints.size());
+                const std::string name = node.name.empty() ? free_joint_name() : node.name;
                 add_joint(name, parent, node.transform);
             }
         }
@@ -304,6 +302,18 @@ class AnimationBuilder {
             return fail("{}: {}", document_.file, status.error().message);
         }
         return Done{};
+    }
+
+    /// Of a node without a name; no other node or joint has it.
+    [[nodiscard]] std::string free_joint_name() const {
+        for (std::size_t number = scene_.skeleton.joints.size();; ++number) {
+            std::string name = fmt::format("joint {}", number);
+            if (std::ranges::find(scene_.nodes, name, &GltfNode::name) == scene_.nodes.end()
+                && std::ranges::find(scene_.skeleton.joints, name)
+                       == scene_.skeleton.joints.end()) {
+                return name;
+            }
+        }
     }
 
     void add_joint(const std::string& name, std::int32_t parent, const Transform& rest) {

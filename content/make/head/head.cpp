@@ -334,11 +334,11 @@ float head_skin_relief(const HeadVertex& vertex, const Vec3& point) {
         {{4.6f, -1.6f, 8.2f}, 2.4f, 0.5f},  // cheek below its bone
     }};
     if (vertex.loops == HeadLoops::Nostril && vertex.loop >= kNostrilRim) {
-        constexpr std::array<float, 4> kOpen = {0.6f, 0.15f, 0.03f, 0};
+        constexpr std::array<float, 4> kOpen = {1, 0.15f, 0.03f, 0};
         return kSkinCavity * kOpen[std::min(vertex.loop - kNostrilRim, 3)];
     }
-    if (vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop + 1) {
-        return kSkinCavity * 0.15f;
+    if (vertex.loops == HeadLoops::Mouth && vertex.loop > kLipLoop) {
+        return vertex.loop == kLipLoop + 1 ? kSkinCavity : kSkinCavity * 0.15f;
     }
     if (vertex.loops == HeadLoops::Eye && vertex.loop >= kLidCreaseLoop - 2) {
         return 0.15f;  // thin skin without pores

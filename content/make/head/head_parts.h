@@ -19,8 +19,8 @@ struct HeadPart {
 [[nodiscard]] Vec3
 head_skin_color(const HeadVertex& vertex, const Vec3& point, const HeadShape& shape);
 
-/// Below it the alpha of a color is not relief: times this, the share of the surroundings that
-/// light a cavity of skin, or a tooth (lib/material.glsl).
+/// Alpha of colors in [0, kSkinCavity] is no relief: divided by kSkinCavity, it is the share of the
+/// surroundings that light a cavity of skin, or a tooth (lib/material.glsl).
 inline constexpr float kSkinCavity = 0.1f;
 
 /// How deep pores are there, 1 on the nose, where they are deepest: the alpha of the skin's colors,

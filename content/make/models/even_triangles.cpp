@@ -243,7 +243,7 @@ void even_triangles(ImplicitMesh& mesh, const SignedDistance& distance, float ce
         flip_edges(mesh);
         relax_on_surface(mesh, distance, cell, 2);
     }
-    for (int i = 0; i < 3; ++i) {  // a vertex takes part in one change at once
+    for (int i = 0; i < 3; ++i) {  // each pass changes a vertex at most once
         flip_edges(mesh);
         collapse_edges(mesh, shortest);
         relax_on_surface(mesh, distance, cell, 1);

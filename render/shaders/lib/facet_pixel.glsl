@@ -17,7 +17,7 @@ float[6] quadratic_basis(vec2 at) {
         a * (2.0 * a - 1.0), 4.0 * a * b, b * (2.0 * b - 1.0), 4.0 * b * c, c * (2.0 * c - 1.0), 4.0 * c * a);
 }
 
-// Columns: diffuse light, still to be multiplied by the base color map, and specular light. A polynomial may
+// Columns: diffuse light, still to be multiplied by the base color map and the dress, and specular light. A polynomial may
 // undershoot, so negative light is clamped.
 vec4 facet_radiance(mat2x3 light) {
     vec3 reflected = max(light[0] * color_over_light() + light[1], 0.0);

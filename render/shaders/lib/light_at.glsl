@@ -12,6 +12,7 @@ struct MeshPoint {
     uint object;
 };
 
+// Cavities of skin are lit as if they were open: the points have no alpha.
 SurfaceSample point_surface(MeshPoint p) {
     vec4 base = material_texel(p.material_and_flags.x, 0);
     vec4 factors = material_texel(p.material_and_flags.x, 2);
@@ -57,7 +58,7 @@ uvec2 point_list(MeshPoint p) {
 #endif
 }
 
-// Diffuse: still to be multiplied by the base color map; with the emission of unlit surfaces.
+// Diffuse: still to be multiplied by the base color map and the dress; with the emission of unlit surfaces.
 Reflected light_at(MeshPoint p) {
     SurfaceSample s = point_surface(p);
     Reflected light = reflect_all(s, p.position_ws, point_pixel(p), point_list(p));

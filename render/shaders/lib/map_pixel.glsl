@@ -24,7 +24,7 @@ vec3 map_texel(vec2 at, float layer) {
     return texture(highlight_maps, vec3(0.5 + 0.5 * at, layer)).rgb;
 }
 
-// `tinted`: still to be multiplied by the base color map.
+// `tinted`: still to be multiplied by the base color map and the dress.
 vec4 map_radiance(vec3 tinted, vec3 highlights) {
     return vec4(storable(tinted * color_over_light() + highlights + surface_emission()), 1.0);
 }

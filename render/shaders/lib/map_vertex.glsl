@@ -11,7 +11,7 @@
 
 layout(binding = kHighlightLayersUnit) uniform usamplerBuffer highlight_layers;  // by material
 
-layout(location = 0) out vec3 diffuse;   // still to be multiplied by the base color map
+layout(location = 0) out vec3 diffuse;   // still to be multiplied by the base color map and the dress
 layout(location = 1) out vec3 specular;
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;

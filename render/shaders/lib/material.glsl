@@ -345,8 +345,9 @@ void shadow_bumps(inout SurfaceSample s) {
 #endif
 
 #if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
-// How open a cavity of skin is, from the alpha of its vertices: below kCavityAlpha, where there are no pores, it is the
-// share of the surroundings that light the surface.
+// How open a cavity of skin is, for shading model Subsurface, from the alpha of its vertices: below kCavityAlpha
+// (kSkinCavity of heads), where there are no pores, it is the share of the surroundings that light the surface. So an
+// opaque mesh of that model needs an alpha of 1, or none.
 float skin_cavity(float alpha) {
     const float kCavityAlpha = 0.1;
     return clamp(alpha / kCavityAlpha, 0.0, 1.0);

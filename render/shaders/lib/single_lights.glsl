@@ -54,7 +54,7 @@ Incoming single_light(LitPoint p, int k) {
 }
 
 // Light of the environment and of the lights below `end`: diffuse from number `diffuse_from` on, specular from number
-// `specular_from` on. Diffuse: still to be multiplied by the base color map; with the emission of unlit surfaces.
+// `specular_from` on. Diffuse: still to be multiplied by the base color map and the dress; with the emission of unlit surfaces.
 Reflected light_from(LitPoint p, int diffuse_from, int specular_from, int end) {
     LightSum sum = no_light();
     for (int k = min(diffuse_from, specular_from); k < min(p.lights, end); ++k) {

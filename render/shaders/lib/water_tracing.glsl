@@ -49,16 +49,18 @@ vec3 ray_point(ScreenRay ray, float path) {
     return vec3(p.xy / max(p.z, 1e-6), p.z);
 }
 
-// From a ray to that of the neighboring pixel, whose difference is `by`: the step [px] of their points at `path`, here
-// `pixel` at `distance`.
+// Screen-space derivative [px] of the ray's point at `path`, which is in `pixel` at `distance`; `by` is the difference
+// of the ray to that of the neighboring pixel.
 vec2 ray_step(ScreenRay by, float path, vec2 pixel, float distance) {
     vec3 step = by.from + path * by.along;
     return (step.xy - step.z * pixel) / max(distance, 1e-6);
 }
 
-// That of a filter two pixels wide, as far as it is more than one that mirrors pixel by pixel.
+// Widens a step to that of a filter of two pixels: 0 for steps up to a pixel, and at most kWidestStep.
 vec2 wider_step(vec2 step) {
-    return step * max(2.0 - 2.0 / max(length(step), 1e-3), 0.0);
+    const float kWidestStep = 32.0;  // beyond, pixels see different bodies
+    float size = max(length(step), 1e-3);
+    return step * max(2.0 - 2.0 / size, 0.0) * min(1.0, kWidestStep / (2.0 * size));
 }
 
 // Distance along the view axis of the surface in a pixel [m]; 0: none, or off screen.
@@ -226,10 +228,12 @@ RayHit trace_reflection(vec3 position, vec3 direction, vec3 around, Side side, b
     vec2 hit = from + u * along;
     vec2 edge = min(hit, view.size.xy - hit) * view.size.zw;
     trust *= clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0);
-    // Where the pixels of a wave reflect more than they hit, as bodies near the horizon, they do so in part.
+    // Weighted by the share of the pixel's footprint that hits the same surface. Past an edge, near the horizon, the
+    // point may lie beyond infinity: then it has no footprint.
     float distance = ray.from.z + path * ray.along.z;
-    vec2 across = is_inside ? wider_step(ray_step(by_x, path, hit, distance)) : vec2(0.0);
-    vec2 down = is_inside ? wider_step(ray_step(by_y, path, hit, distance)) : vec2(0.0);
+    bool is_wide = is_inside && path > 0.0 && distance > 0.0 && distance < kInfiniteDistance;
+    vec2 across = is_wide ? wider_step(ray_step(by_x, path, hit, distance)) : vec2(0.0);
+    vec2 down = is_wide ? wider_step(ray_step(by_y, path, hit, distance)) : vec2(0.0);
     vec4 mean = mean_radiance_at(hit, across, down, blocking_nearness(clamp_to_screen(hit), side), side);
     vec3 color = mean.a > 0.0 ? mean.rgb : radiance_at(clamp_to_screen(hit));
     trust *= mean.a;
