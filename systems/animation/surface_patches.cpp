@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -115,6 +116,10 @@ class PatchBinder {
         }
         for (std::size_t i = 0; i < corners.size(); ++i) {
             borders_.push_back(edges[edge_at(i)] == 1);
+            if (borders_.back()) {
+                const Edge edge = edge_at(i);
+                border_corners_.insert({edge.first, edge.second});
+            }
         }
     }
 
@@ -123,28 +128,36 @@ class PatchBinder {
         const auto in_space = [&](std::size_t i) { return corner(i); };
         const Faces near = nearest_faces(point, kCandidates, in_space);
         const Faces facing = facing_along(near, normal);
-        for (const bool at_border : {false, true}) {
-            SurfaceAnchor chosen;
-            for (const Faces& faces : {facing, near}) {
-                SurfaceAnchor anchor;
-                if ((!at_border && find_inside(point, faces, anchor))
-                    || find_beside(point, faces, at_border, anchor)) {
-                    const float clearly = kFacing * size_of(anchor.patch);
-                    if (chosen.patch == kNoPatch
-                        || glm::length(chosen.offset) > glm::length(anchor.offset) + clearly) {
-                        chosen = anchor;
-                    }
-                }
+        SurfaceAnchor chosen;
+        bool chosen_border = false;
+        for (const Faces& faces : {facing, near}) {
+            SurfaceAnchor anchor;
+            SurfaceAnchor beside;
+            bool at_border = false;
+            find_inside(point, faces, anchor);
+            find_beside(point, faces, at_border, beside);
+            if (beside.patch != kNoPatch
+                && (anchor.patch == kNoPatch
+                    || glm::length(beside.offset) < glm::length(anchor.offset))) {
+                anchor = beside;
+            } else {
+                at_border = false;
             }
-            if (chosen.patch != kNoPatch) {
-                chosen.share = share_of(chosen.offset, at_border);
-                chosen = finished(chosen, normal, tangent);
-                if (chosen.patch != kNoPatch) {
-                    return chosen;
-                }
+            if (anchor.patch == kNoPatch) {
+                continue;
+            }
+            const float clearly = kFacing * size_of(anchor.patch);
+            if (chosen.patch == kNoPatch
+                || glm::length(chosen.offset) > glm::length(anchor.offset) + clearly) {
+                chosen = anchor;
+                chosen_border = at_border;
             }
         }
-        return {};
+        if (chosen.patch == kNoPatch) {
+            return {};
+        }
+        chosen.share = share_of(chosen.offset, chosen_border);
+        return finished(chosen, normal, tangent);
     }
 
     /// `at`: of the point in the chart.
@@ -158,12 +171,16 @@ class PatchBinder {
         }
         if (!near.empty() && near[0].first > kOnChart) {
             // Points beyond the border are bound where the surface covers them closely.
+            bool at_border = false;
             const bool covered =
-                (anchor.patch != kNoPatch || find_beside(point, {near[0]}, false, anchor))
+                (anchor.patch != kNoPatch
+                 || (find_beside(point, {near[0]}, at_border, anchor) && !at_border))
                 && glm::length(anchor.offset) < kCloseTo * size_of(anchor.patch);
             return covered ? finished(anchor, normal, tangent) : SurfaceAnchor{};
         }
-        const bool found = anchor.patch != kNoPatch || find_beside(point, {near[0]}, false, anchor);
+        bool at_border = false;
+        const bool found = anchor.patch != kNoPatch
+                           || (find_beside(point, {near[0]}, at_border, anchor) && !at_border);
         return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
     }
 
@@ -282,17 +299,63 @@ class PatchBinder {
         return anchor.patch != kNoPatch;
     }
 
-    /// Above an edge: the nearest anchor, and an offset that is not only along the normal. False if
-    /// that is at the border of the surface, unless `at_border`.
+    /// The nearest point of a patch to `p`, whose foot, if it has one, is at `at`, in or beside the
+    /// triangle: then on the edges beyond which that lies.
+    static Vec2 nearest_beside(std::span<const Vec4> patch, const Vec3& p, const Vec3& at) {
+        const bool has_foot = is_finite(at);
+        if (has_foot && is_inside_chart(at)) {
+            return clamp_uvd(at);
+        }
+        const Vec3 foot = has_foot ? Vec3(at.x, at.y, 1.0f - at.x - at.y) : Vec3(-1);
+        Vec2 nearest(1.0f / 3.0f);
+        float least = INFINITY;
+        for (int across = 0; across < 3; ++across) {
+            if (foot[across] > 0.0f) {
+                continue;
+            }
+            const auto point = [&](float t) {
+                Vec3 weights(0);
+                weights[(across + 1) % 3] = 1.0f - t;
+                weights[(across + 2) % 3] = t;
+                return Vec2(weights);
+            };
+            const auto distance = [&](float t) {
+                const Vec2 uv = point(t);
+                return glm::distance(evaluate_patch(patch, uv.x, uv.y).position, p);
+            };
+            constexpr std::array<float, 5> kOnEdge = {0, 0.25f, 0.5f, 0.75f, 1};
+            const float best = *std::ranges::min_element(kOnEdge, {}, distance);
+            float low = std::max(best - 0.25f, 0.0f);
+            float high = std::min(best + 0.25f, 1.0f);
+            for (int i = 0; i < 12; ++i) {  // ternary search
+                const float third = (high - low) / 3.0f;
+                if (distance(low + third) < distance(high - third)) {
+                    high -= third;
+                } else {
+                    low += third;
+                }
+            }
+            const std::array<float, 3> ends = {(low + high) / 2.0f, low, high};
+            const float t = *std::ranges::min_element(ends, {}, distance);
+            if (distance(t) < least) {
+                least = distance(t);
+                nearest = point(t);
+            }
+        }
+        return nearest;
+    }
+
+    /// Above an edge: the nearest anchor, an offset that is not only along the normal, and whether
+    /// that is at the border of the surface.
     bool
-    find_beside(const Vec3& p, const Faces& faces, bool at_border, SurfaceAnchor& anchor) const {
+    find_beside(const Vec3& p, const Faces& faces, bool& is_border, SurfaceAnchor& anchor) const {
         anchor = {};
         float nearest = INFINITY;
-        bool is_border = false;
+        is_border = false;
         for (const auto& [flat, f] : faces) {
             Vec3 at = nearest_sample(patch(f), p);
             solve_uvd(patch(f), p, size_of(f), at);
-            const Vec2 clamped = is_finite(at) ? clamp_uvd(at) : Vec2(1.0f / 3.0f);
+            const Vec2 clamped = nearest_beside(patch(f), p, at);
             const PatchPoint on = evaluate_patch(patch(f), clamped.x, clamped.y);
             const float distance = glm::distance(on.position, p);
             if (distance < nearest) {
@@ -302,13 +365,16 @@ class PatchBinder {
                 anchor.v = clamped.y;
                 anchor.offset = glm::transpose(frame_at(on)) * (p - on.position);
                 const float w = 1.0f - clamped.x - clamped.y;
+                const Vec3 weights(clamped, w);
                 is_border = (borders_[3 * f] && w <= kInside)
                             || (borders_[3 * f + 1] && clamped.x <= kInside)
                             || (borders_[3 * f + 2] && clamped.y <= kInside);
+                for (std::size_t k = 0; k < 3; ++k) {  // all of the corner's patches see it alike
+                    is_border = is_border
+                                || (weights[static_cast<int>(k)] >= 1.0f - kInside
+                                    && border_corners_.contains(corners_[3 * f + k]));
+                }
             }
-        }
-        if (is_border && !at_border) {
-            anchor = {};
         }
         return anchor.patch != kNoPatch;
     }
@@ -319,6 +385,7 @@ class PatchBinder {
     std::span<const Vec2> chart_;  ///< per corner, or empty
     std::vector<Vec4> patches_;
     std::vector<bool> borders_;  ///< of the edge from each corner to the next
+    std::set<std::uint32_t> border_corners_;
 };
 
 /// Two thirds from `b` to `a`, projected into the plane through `a`.
