@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <unordered_map>
@@ -57,6 +58,7 @@ struct FileEntity {
     int parent = -1;  ///< index; -1: none
     std::string name;
     bool is_gone = false;
+    std::uint64_t order = 0;  ///< among siblings: what was made or moved is after what stayed
 };
 
 /// The entities of a level as a list, in which they can be moved.
@@ -132,6 +134,10 @@ class FileEntities {
                 children[index(list_[i].parent + 1)].push_back(static_cast<int>(i));
             }
         }
+        for (std::vector<int>& siblings : children) {
+            std::ranges::stable_sort(
+                siblings, {}, [&](int child) { return list_[index(child)].order; });
+        }
         return build_children(children, -1);
     }
 
@@ -148,7 +154,7 @@ class FileEntities {
         for (JsonValue& json : entities.items) {
             JsonValue children = take_member(json, "children");
             std::string name = json["name"].text;
-            list_.push_back({std::move(json), parent, std::move(name)});
+            list_.push_back({.json = std::move(json), .parent = parent, .name = std::move(name)});
             parents_.push_back(parent);
             flatten(std::move(children), static_cast<int>(list_.size()) - 1);
         }
@@ -183,7 +189,7 @@ class FileEntities {
             return;
         }
         made_[entity] = static_cast<int>(list_.size());
-        list_.push_back({std::move(json), above, name});
+        list_.push_back({std::move(json), above, name, false, order_of(entity)});
         parents_.push_back(above);
     }
 
@@ -197,6 +203,12 @@ class FileEntities {
             return;
         }
         list_[index(at)].parent = above;
+        list_[index(at)].order = order_of(entity);
+    }
+    /// Of what was made or moved.
+    [[nodiscard]] std::uint64_t order_of(Entity entity) const {
+        const auto* const parent = world_.find<Parent>(entity);
+        return parent != nullptr ? std::uint64_t{1} + parent->order : 1;
     }
 
     /// An entity that would be below itself, since the move of one between them could not be saved,
@@ -213,6 +225,7 @@ class FileEntities {
         }
         if (above == at) {
             list_[index(at)].parent = parents_[index(at)];
+            list_[index(at)].order = 0;
             leave_out("the move of " + quoted(before_.name(entity)));
             unmoved_.insert(entity);
         }
