@@ -20,7 +20,7 @@ found() {
 quick() {
     [[ $1 =~ ^limn\ (bake|import|make)\ [a-z_-]+$ || $1 =~ ^limn\ (film|speak|view)$ ]] && return
     case $1 in
-    *SCENE* | *' IN '* | *LEVEL* | *KIND* | *LOW* | *TEXT* | *FILE* | *FOLDER* | *ID* | *COMMAND* | 'limn play' | 'limn render' | 'limn quality' | 'limn info' | 'limn check' | 'limn hash') return ;;
+    *SCENE* | *' IN '* | *LEVEL* | *KIND* | *LOW* | *TEXT* | *FILE* | *FOLDER* | *ID* | *COMMAND* | 'limn play' | 'limn render' | 'limn quality' | 'limn info' | 'limn check' | 'limn edit' | 'limn hash') return ;;
     esac
     local command=$1
     command=$(sed -E 's/--size [0-9x]+//; s/--spp [0-9]+/--spp 2/; s/--frames [0-9]+:[0-9]+/--frames 0:1/; s/--frames [0-9]+( |$)/ /; s/--warmup [0-9]+//' <<<"$command")
