@@ -353,6 +353,9 @@ class PatchBinder {
         float nearest = INFINITY;
         is_border = false;
         for (const auto& [flat, f] : faces) {
+            if (flat - 0.5f * size_of(f) > nearest) {  // a patch bulges less than its size
+                continue;
+            }
             Vec3 at = nearest_sample(patch(f), p);
             solve_uvd(patch(f), p, size_of(f), at);
             const Vec2 clamped = nearest_beside(patch(f), p, at);
