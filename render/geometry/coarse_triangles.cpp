@@ -122,15 +122,6 @@ bool is_rigid(const MeshData& mesh) {
     return mesh.skin.empty() && mesh.morphs.empty();
 }
 
-/// Covers everything that simplify_triangles reads.
-std::uint64_t hash_of(const MeshData& mesh) {
-    const auto bytes = [](const auto& values, std::uint64_t seed) {
-        return hash_bytes(values.data(), values.size() * sizeof(values[0]), seed);
-    };
-    const std::uint64_t kind = (is_rigid(mesh) ? 1u : 0u) + (mesh.morphs.empty() ? 2u : 0u);
-    return hash_combine(bytes(mesh.indices, bytes(mesh.positions, kind)), mesh.positions.size());
-}
-
 }  // namespace
 
 std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
@@ -168,34 +159,6 @@ std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh) {
         error = std::max(error, distance);
         levels.push_back({coarser, error});
         finer = std::move(coarser);
-    }
-    return levels;
-}
-
-std::vector<std::vector<CoarseTriangles>>
-CoarseMemory::simplify(std::span<const MeshData* const> meshes) {
-    std::vector<std::uint64_t> keys(meshes.size());
-    std::vector<std::vector<CoarseTriangles>> levels(meshes.size());
-    parallel_for(meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (meshes[i] == nullptr) {
-                continue;
-            }
-            keys[i] = hash_of(*meshes[i]);
-            const auto known = levels_.find(keys[i]);
-            levels[i] = known != levels_.end() ? known->second : simplify_triangles(*meshes[i]);
-        }
-    });
-    if (indices_ > kMaxIndices) {
-        levels_.clear();
-        indices_ = 0;
-    }
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        if (meshes[i] != nullptr && levels_.try_emplace(keys[i], levels[i]).second) {
-            for (const CoarseTriangles& level : levels[i]) {
-                indices_ += level.indices.size();
-            }
-        }
     }
     return levels;
 }

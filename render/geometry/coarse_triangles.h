@@ -4,8 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <span>
 #include <vector>
 
 namespace limn {
@@ -32,18 +30,5 @@ struct CoarseTriangles {
 /// previous one; none for a mesh that is already small, has positions that are not finite, or has
 /// more than 200,000 triangles in connected components that average fewer than 12.
 [[nodiscard]] std::vector<CoarseTriangles> simplify_triangles(const MeshData& mesh);
-
-/// Caches the coarser levels of meshes, for worlds that are loaded again.
-class CoarseMemory {
-  public:
-    /// simplify_triangles of each mesh that is not null, else nothing.
-    [[nodiscard]] std::vector<std::vector<CoarseTriangles>>
-    simplify(std::span<const MeshData* const> meshes);
-
-  private:
-    static constexpr std::size_t kMaxIndices = std::size_t{1} << 24;  // then the cache is cleared
-    std::map<std::uint64_t, std::vector<CoarseTriangles>> levels_;    // by hash of the mesh
-    std::size_t indices_ = 0;
-};
 
 }  // namespace limn

@@ -2,7 +2,6 @@
 
 #include "ecs/base/log.h"
 #include "render/geometry/mesh_curvature.h"
-#include "render/geometry/triangle_order.h"
 #include "render/gpu/grown_buffer.h"
 
 #include <glm/gtc/packing.hpp>
@@ -61,13 +60,6 @@ void write_stream(
     streams.write(stream, first, std::span<const decltype(pack(mesh, 0))>(values));
 }
 
-void write_curvatures(VertexStreams& streams, const MeshData& mesh, const MeshRange& range) {
-    const std::vector<Vec2> values = fit_curvatures(mesh);
-    streams.write(
-        VertexStream::Curvature, static_cast<std::uint32_t>(range.base_vertex),
-        std::span<const Vec2>(values));
-}
-
 bool is_drawable(const MeshData& mesh) {
     const auto past = [&](std::uint32_t index) { return index >= mesh.positions.size(); };
     if (mesh.positions.empty() || mesh.indices.size() < 3) {
@@ -121,14 +113,14 @@ void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
     std::vector<char> drawable(meshes.size());
-    std::vector<const MeshData*> fresh(meshes.size());  // to be simplified
+    std::vector<const MeshData*> fresh(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
             fresh[i] = i >= known && drawable[i] != 0 ? &meshes[i] : nullptr;
         }
     }
-    const std::vector<std::vector<CoarseTriangles>> coarse = coarse_memory_.simplify(fresh);
+    const std::vector<const PreparedMesh*> prepared = memory_.prepare(fresh, curved || curved_);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             release(meshes_[i]);
@@ -136,23 +128,32 @@ void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
             meshes_[i].version = meshes[i].version;
             meshes_[i].bounds = meshes[i].bounds;
             if (drawable[i] != 0) {
-                upload(meshes[i], coarse[i], i >= known, meshes_[i]);
+                upload(meshes[i], prepared[i], meshes_[i]);
             }
             ++revision_;
         }
     }
-    if (curved && !streams_.has(VertexStream::Curvature)) {
+    if (curved && !curved_) {
+        curved_ = true;
         streams_.require(VertexStream::Curvature);
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             if (meshes_[i].index_count > 0) {
-                write_curvatures(streams_, meshes[i], meshes_[i]);
+                write_curvatures(meshes[i], prepared[i], meshes_[i]);
             }
         }
     }
 }
 
-void MeshPool::upload(
-    const MeshData& mesh, std::span<const CoarseTriangles> coarse, bool fresh, MeshRange& range) {
+void MeshPool::write_curvatures(
+    const MeshData& mesh, const PreparedMesh* prepared, const MeshRange& range) {
+    const std::vector<Vec2> fitted =
+        prepared != nullptr ? std::vector<Vec2>() : fit_curvatures(mesh);
+    streams_.write(
+        VertexStream::Curvature, static_cast<std::uint32_t>(range.base_vertex),
+        std::span<const Vec2>(prepared != nullptr ? prepared->curvatures : fitted));
+}
+
+void MeshPool::upload(const MeshData& mesh, const PreparedMesh* prepared, MeshRange& range) {
     if (is_empty(range.bounds)) {
         for (const Vec3& p : mesh.positions) {
             grow(range.bounds, p);
@@ -168,14 +169,15 @@ void MeshPool::upload(
     streams_.reserve(vertex_slots_.capacity());
     const std::size_t old_indices = index_slots_.capacity();
     const auto triangles = std::span(mesh.indices).first(range.index_count);
-    std::vector<std::uint32_t> indices =
-        fresh ? order_for_cache(triangles, mesh.positions.size())
-              : std::vector<std::uint32_t>(triangles.begin(), triangles.end());
-    for (const CoarseTriangles& level : coarse) {
-        range.coarse.push_back(
-            {static_cast<std::uint32_t>(indices.size()),
-             static_cast<std::uint32_t>(level.indices.size()), level.error});
-        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+    std::vector<std::uint32_t> indices(triangles.begin(), triangles.end());
+    if (prepared != nullptr) {
+        indices = prepared->ordered;
+        for (const CoarseTriangles& level : prepared->coarse) {
+            range.coarse.push_back(
+                {static_cast<std::uint32_t>(indices.size()),
+                 static_cast<std::uint32_t>(level.indices.size()), level.error});
+            indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+        }
     }
     range.wide = mesh.positions.size() > kMaxShortVertices;
     const std::vector<std::uint32_t> pairs =
@@ -207,8 +209,8 @@ void MeshPool::upload(
     if (streams_.has(VertexStream::Color)) {
         write_stream(streams_, VertexStream::Color, first, mesh, pack_color);
     }
-    if (streams_.has(VertexStream::Curvature)) {
-        write_curvatures(streams_, mesh, range);
+    if (curved_) {
+        write_curvatures(mesh, prepared, range);
     }
     indices_.write(std::size_t{4} * first_word, words);
 }
@@ -230,6 +232,7 @@ void MeshPool::release(const MeshRange& range) {
 
 void MeshPool::clear() {
     ++revision_;
+    curved_ = false;
     meshes_.clear();
     vertex_slots_.clear();
     index_slots_.clear();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/components/surface.h"
-#include "render/geometry/coarse_triangles.h"
+#include "render/geometry/mesh_memory.h"
 #include "render/geometry/slot_allocator.h"
 #include "render/geometry/vertex_streams.h"
 #include "render/gpu/buffer.h"
@@ -77,13 +77,15 @@ class MeshPool {
 
   private:
     void release(const MeshRange& range);
-    void upload(
-        const MeshData& mesh, std::span<const CoarseTriangles> coarse, bool fresh,
-        MeshRange& range);
+    /// `prepared`: null of a mesh that was edited.
+    void upload(const MeshData& mesh, const PreparedMesh* prepared, MeshRange& range);
+    void
+    write_curvatures(const MeshData& mesh, const PreparedMesh* prepared, const MeshRange& range);
 
     std::vector<MeshRange> meshes_;
-    CoarseMemory coarse_memory_;
+    MeshMemory memory_;
     std::uint64_t revision_ = 0;
+    bool curved_ = false;  ///< the curvatures of all meshes are there
     VertexStreams streams_;
     gpu::Buffer indices_;
     SlotAllocator vertex_slots_;

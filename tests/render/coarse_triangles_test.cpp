@@ -53,29 +53,6 @@ TEST_CASE("triangle grid: the distance of a triangle is that of its side, edge o
     CHECK(distance_to_triangle({3, 4, 0}, a, a, a) == near(5));               // a point
 }
 
-TEST_CASE("coarse triangles: cached levels are those of the mesh, until it changes") {
-    CoarseMemory memory;
-    MeshData mesh = ball();
-    const auto is_same = [&](const std::vector<CoarseTriangles>& found) {
-        const std::vector<CoarseTriangles> expected = simplify_triangles(mesh);
-        bool same = found.size() == expected.size();
-        for (std::size_t i = 0; same && i < found.size(); ++i) {
-            same = found[i].indices == expected[i].indices && found[i].error == expected[i].error;
-        }
-        return same;
-    };
-    const std::vector<const MeshData*> meshes = {nullptr, &mesh};
-    for (int time = 0; time < 2; ++time) {
-        const auto levels = memory.simplify(meshes);
-        CHECK(levels[0].empty());
-        CHECK(is_same(levels[1]));
-    }
-    mesh.positions[7] *= 1.5f;
-    CHECK(is_same(memory.simplify(meshes)[1]));
-    mesh.morphs.resize(1);  // which is simplified by edge collapse only
-    CHECK(is_same(memory.simplify(meshes)[1]));
-}
-
 TEST_CASE("triangle grid: it finds the same distances as a loop over all triangles") {
     const MeshData mesh = ball();
     const TriangleGrid grid(mesh.positions, mesh.indices);
