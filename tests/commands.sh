@@ -68,6 +68,22 @@ done
 ffmpeg -v error -f lavfi -i sine=d=1 "$folder/hello.wav" || exit 1
 "$limn" bake block "$folder/wall.png" -o "$folder/wall.dds" >/dev/null || exit 1
 
+# Two triangles with a texture each.
+{
+    printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0'
+    printf '\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\200\77'
+} >"$folder/tiles.bin"
+echo '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "buffers": [{"uri": "tiles.bin", "byteLength": 60}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+        {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+    "images": [{"uri": "wall.png"}, {"uri": "a.png"}], "textures": [{"source": 0}, {"source": 1}],
+    "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+        {"pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0},
+        {"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 1}]}]}' >"$folder/tiles.gltf"
+
 echo '{"shots": [{"image": "a.png", "to_light": [1, 0, 1]}, {"image": "b.png", "to_light": [-1, 0, 1]},
     {"image": "before.png", "to_light": [0, 1, 1]}]}' >"$folder/shots.json"
 echo '{"face": "face.glb", "degree": 1, "size": 16, "poses": [{"image": "a.png", "shapes": [{"name": "mouthSmile_L"}]},

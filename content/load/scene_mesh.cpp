@@ -84,9 +84,13 @@ join_meshes(const GltfScene& scene, const std::string& name, const std::string& 
     return mesh;
 }
 
-Result<MeshData> load_joined_mesh(const std::string& path, const std::string& name) {
+Result<GltfScene> load_model_scene(const std::string& path) {
     const bool is_obj = path.ends_with(".obj") || path.ends_with(".OBJ");
-    const GltfScene scene = LIMN_TRY(is_obj ? load_obj_scene(path) : load_gltf(path));
+    return is_obj ? load_obj_scene(path) : load_gltf(path);
+}
+
+Result<MeshData> load_joined_mesh(const std::string& path, const std::string& name) {
+    const GltfScene scene = LIMN_TRY(load_model_scene(path));
     return join_meshes(scene, name, path);
 }
 

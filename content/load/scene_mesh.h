@@ -15,7 +15,10 @@ struct GltfScene;
 [[nodiscard]] Result<MeshData>
 join_meshes(const GltfScene& scene, const std::string& name, const std::string& path);
 
-/// The same of a file, .gltf, .glb or .obj.
+/// A file, .gltf, .glb or .obj, as a scene; components must be registered.
+[[nodiscard]] Result<GltfScene> load_model_scene(const std::string& path);
+
+/// join_meshes of a file.
 [[nodiscard]] Result<MeshData> load_joined_mesh(const std::string& path, const std::string& name);
 
 }  // namespace limn

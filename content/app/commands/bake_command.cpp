@@ -1,5 +1,6 @@
 #include "content/app/commands/bake_command.h"
 
+#include "content/app/commands/bake_atlas.h"
 #include "content/app/commands/bake_block.h"
 #include "content/app/commands/bake_detail.h"
 #include "content/app/commands/bake_ghosts.h"
@@ -142,6 +143,8 @@ Status bake_furrows(const BakeOptions& options) {
 
 constexpr BakeKind kKinds[] = {
     {"ao", "ambient occlusion of a height map or a mesh", bake_occlusion_map},
+    {"atlas", "a model whose materials that differ only in their textures are one", bake_atlas,
+     ".glb"},
     {"block", "an image in blocks that stay compressed on the GPU, with mip levels", bake_block,
      ".dds"},
     {"cone", "relief map with relaxed cones, for marching in few steps", bake_cone_map},

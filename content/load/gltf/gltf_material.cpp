@@ -256,6 +256,9 @@ class MaterialBuilder {
             result.wrap_v = to_wrap(sampler.wrapT);
             result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
             result.minify = to_minify(sampler.minFilter);
+            const Vec2 all = result.lod_range;
+            const Vec2 levels = vector_of(member_of(sampler.extras, "limn"), "lod_range", all);
+            result.lod_range = glm::clamp(levels, Vec2(all.x), Vec2(all.y));
         }
         const tinygltf::Value& transform = extension_of(info.extensions, "KHR_texture_transform");
         result.offset = vector_of(transform, "offset", Vec2(0));

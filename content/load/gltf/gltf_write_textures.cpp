@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -85,13 +86,20 @@ int append_texture(tinygltf::Model& model, const TextureSlot& slot) {
     sampler.minFilter = gltf_minify(slot.minify);
     sampler.wrapS = gltf_wrap(slot.wrap_u);
     sampler.wrapT = gltf_wrap(slot.wrap_v);
+    if (slot.lod_range != TextureSlot{}.lod_range) {
+        const auto level = [](float value) { return tinygltf::Value(static_cast<double>(value)); };
+        tinygltf::Value::Array range = {level(slot.lod_range.x), level(slot.lod_range.y)};
+        tinygltf::Value::Object limn = {{"lod_range", tinygltf::Value(std::move(range))}};
+        sampler.extras =
+            tinygltf::Value(tinygltf::Value::Object{{"limn", tinygltf::Value(std::move(limn))}});
+    }
     const auto image = static_cast<int>(slot.image.index);
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
         const tinygltf::Sampler& other =
             model.samplers[static_cast<std::size_t>(model.textures[i].sampler)];
         if (model.textures[i].source == image && other.magFilter == sampler.magFilter
             && other.minFilter == sampler.minFilter && other.wrapS == sampler.wrapS
-            && other.wrapT == sampler.wrapT) {
+            && other.wrapT == sampler.wrapT && other.extras == sampler.extras) {
             return static_cast<int>(i);
         }
     }

@@ -163,6 +163,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.render-profile", "renderers as lists of effects, replaceable renderer"},
     {"engine.space-dust", "space dust"},
     {"engine.stock-active", "prefabs and their instances"},
+    {"engine.texture-atlas", "texture atlas of a model's materials"},
     {"engine.trail", "trails, ribbons"},
     {"engine.type-registry", "registry of component types"},
     {"engine.visibility-sets", "frustum culling, sets of visible objects and lights"},
