@@ -161,6 +161,25 @@ struct PassTiming {
     double last_gpu_ms = 0;  ///< of the last frame whose times arrived
 };
 
+/// Memory that a pass reads and writes if it touches each texel and byte of its resources once
+/// (engine.opt-framebuffer): less where it covers only some pixels, more where it blends, tests
+/// depth, or samples a texel several times.
+struct PassTraffic {
+    std::string_view name = {};
+    std::size_t read_bytes = 0;
+    std::size_t written_bytes = 0;
+};
+
+/// A texture of the frame that is not imported.
+struct TargetCost {
+    std::string_view name = {};
+    const char* format = "";
+    int bytes_per_pixel = 0;  ///< per sample
+    int width = 0;
+    int height = 0;
+    std::size_t bytes = 0;  ///< with all levels, layers and samples
+};
+
 class FrameGraph {
   public:
     explicit FrameGraph(gpu::Device& device);
@@ -238,6 +257,11 @@ class FrameGraph {
     void wait_for_timings();
     /// Timestamps can be switched off to measure their cost.
     void set_gpu_timing(bool on);
+
+    /// Of the passes that ran in the last frame, in their order.
+    [[nodiscard]] std::vector<PassTraffic> traffic() const;
+    /// Of the last frame, those that some pass used.
+    [[nodiscard]] std::vector<TargetCost> targets() const;
 
     /// A table of passes, what they read and write, and their times.
     [[nodiscard]] std::string to_text() const;

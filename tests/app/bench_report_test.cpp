@@ -66,4 +66,23 @@ TEST_CASE("bench_report: the table only counts idle systems, the JSON lists them
     CHECK(nlohmann::json::parse(bench_json(report))["systems"].size() == 4);
 }
 
+TEST_CASE("bench_report: what passes read and write is summed, large ones first") {
+    BenchReport report = small_report();
+    report.traffic = {{"sky", 0, 2}, {"tiny", 0.01, 0.02}, {"lights", 6, 1.5}};
+    report.targets = {
+        {"depth", "DEPTH32F", 4, {640, 360}, 0.88}, {"hdr", "RGBA16F", 8, {640, 360}, 1.76}};
+    const std::string table = traffic_table(report);
+    CHECK(table.find("pass   lights") < table.find("pass   sky"));
+    CHECK(table.find("tiny") == std::string::npos);  // but it counts
+    CHECK(
+        table.find("all passes                                6.01        3.52\n")
+        != std::string::npos);
+    CHECK(table.find("hdr, RGBA16F") < table.find("depth, DEPTH32F"));
+    const nlohmann::json json = nlohmann::json::parse(bench_json(report));
+    CHECK(json["traffic"][1]["pass"] == "tiny");
+    CHECK(json["traffic"][2]["read_mib"] == 6);
+    CHECK(json["targets"][0]["bytes_per_pixel"] == 4);
+    CHECK(json["targets"][1]["size"] == nlohmann::json::array({640, 360}));
+}
+
 }  // namespace limn::bench_report_test

@@ -145,6 +145,23 @@ void touch_samples(BenchReport& report) {
     }
 }
 
+void add_frame_buffer_cost(const FrameGraph& graph, BenchReport& report) {
+    constexpr double kMib = 1 << 20;
+    for (const PassTraffic& pass : graph.traffic()) {
+        report.traffic.push_back(
+            {std::string(pass.name), static_cast<double>(pass.read_bytes) / kMib,
+             static_cast<double>(pass.written_bytes) / kMib});
+    }
+    for (const TargetCost& target : graph.targets()) {
+        report.targets.push_back(
+            {std::string(target.name),
+             target.format,
+             target.bytes_per_pixel,
+             {target.width, target.height},
+             static_cast<double>(target.bytes) / kMib});
+    }
+}
+
 }  // namespace
 
 void run_bench_frame(
@@ -238,6 +255,9 @@ Status check_bench_options(const BenchOptions& options) {
     if (options.bottleneck && !is_scene) {
         return fail("--bottleneck is for scenes, found `{}`", options.scene);
     }
+    if (options.targets && !is_scene) {
+        return fail("--targets is for scenes, found `{}`", options.scene);
+    }
     if (is_program(options.scene)) {
         return Done{};
     }
@@ -322,10 +342,13 @@ Status run_bench(const BenchOptions& options) {
     report.resident_mib = resident_memory_mib();
     report.gpu_mib =
         static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
+    add_frame_buffer_cost(frame_graph(*headless->renderer), report);
     if (options.bottleneck) {
         report.stages = measure_stages(stage, *headless, options.size, options.frames);
     }
-    return write_results(options, bench_table(report), bench_json(report), bench_csv(report));
+    return write_results(
+        options, bench_table(report) + (options.targets ? traffic_table(report) : ""),
+        bench_json(report), bench_csv(report));
 }
 
 }  // namespace limn

@@ -14,6 +14,7 @@ namespace limn {
 // Shown by `limn bench fakephong`: fakephong.forward-difference, fakephong.metric-efficiency
 // Shown by `limn bench gallery`: engine.multi-material, shade.batching
 // Shown by `limn bench lights`: engine.visibility-sets
+// Shown by `limn bench museum --targets`: engine.opt-framebuffer
 // Shown by `limn bench stress-instances`: engine.batching, engine.hier-bounds, shade.stream-kernel
 
 struct BenchReport;
@@ -31,6 +32,7 @@ struct BenchOptions {
     std::string csv;          ///< the same
     std::string svg;          ///< file, of `particles` and `faces`; empty = none
     std::string only;         ///< one part of `particles`, `faces` or `characters`; empty = all
+    bool targets = false;     ///< also list what passes read and write, and render targets
     bool bottleneck = false;  ///< also measure the stages of the pipeline (bottleneck.h)
     std::size_t most = 0;  ///< particles at the last point of the curves; 0 = the program's default
     std::optional<gpu::Profile> profile;  ///< empty = chosen by the device

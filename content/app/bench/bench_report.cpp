@@ -12,6 +12,7 @@ namespace {
 
 constexpr BenchKind kReportKinds[] = {BenchKind::Frame, BenchKind::System, BenchKind::Pass};
 
+constexpr double kShownMib = 0.05;  // the tables list what is at least as large
 constexpr double kShownMs = 0.005;  // the table lists systems that take at least this long
 
 const char* kind_name(BenchKind kind) {
@@ -100,6 +101,41 @@ std::string bench_table(const BenchReport& report) {
     return report.stages ? text + bottleneck_text(*report.stages) : text;
 }
 
+std::string traffic_table(const BenchReport& report) {
+    const auto largest_first = [](auto list, auto size) {
+        std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) {
+            return size(a) > size(b);
+        });
+        return list;
+    };
+    const auto both = [](const BenchTraffic& one) { return one.read_mib + one.written_mib; };
+    const auto mib = [](const BenchTarget& one) { return one.mib; };
+    std::string text;
+    auto out = std::back_inserter(text);
+    BenchTraffic sum{.pass = "all passes"};
+    fmt::format_to(out, "\n{:<34} {:>11} {:>11}\n", "[MiB], each texel once", "read", "written");
+    for (const BenchTraffic& one : largest_first(report.traffic, both)) {
+        sum.read_mib += one.read_mib;
+        sum.written_mib += one.written_mib;
+        if (both(one) >= kShownMib) {
+            fmt::format_to(
+                out, "pass   {:<27} {:>11.2f} {:>11.2f}\n", one.pass, one.read_mib,
+                one.written_mib);
+        }
+    }
+    fmt::format_to(
+        out, "{:<34} {:>11.2f} {:>11.2f}\n\n{:<34} {:>11} {:>11} {:>11}\n", sum.pass, sum.read_mib,
+        sum.written_mib, "render target", "pixels", "bytes/pixel", "MiB");
+    for (const BenchTarget& one : largest_first(report.targets, mib)) {
+        if (one.mib >= kShownMib) {
+            fmt::format_to(
+                out, "{:<34} {:>11} {:>11} {:>11.2f}\n", one.name + ", " + one.format,
+                fmt::format("{}x{}", one.size.x, one.size.y), one.bytes_per_pixel, one.mib);
+        }
+    }
+    return text;
+}
+
 std::string bench_json(const BenchReport& report) {
     nlohmann::ordered_json json = {
         {"scene", report.scene},
@@ -143,6 +179,18 @@ std::string bench_json(const BenchReport& report) {
                  {"max_ms", line.summary.max}});
         }
         json[key] = std::move(array);
+    }
+    for (const BenchTraffic& one : report.traffic) {
+        json["traffic"].push_back(
+            {{"pass", one.pass}, {"read_mib", one.read_mib}, {"written_mib", one.written_mib}});
+    }
+    for (const BenchTarget& one : report.targets) {
+        json["targets"].push_back(
+            {{"name", one.name},
+             {"format", one.format},
+             {"bytes_per_pixel", one.bytes_per_pixel},
+             {"size", {one.size.x, one.size.y}},
+             {"mib", one.mib}});
     }
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

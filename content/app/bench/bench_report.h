@@ -25,6 +25,21 @@ struct BenchSeries {
     std::vector<double> samples;  ///< [ms]
 };
 
+/// Memory that a pass touches at least (PassTraffic).
+struct BenchTraffic {
+    std::string pass;
+    double read_mib = 0;
+    double written_mib = 0;
+};
+/// A render target (TargetCost).
+struct BenchTarget {
+    std::string name;
+    std::string format;
+    int bytes_per_pixel = 0;
+    IVec2 size = {0, 0};  ///< [pixels]
+    double mib = 0;
+};
+
 struct BenchReport {
     std::string scene = {};
     IVec2 size = {0, 0};  ///< [pixels]
@@ -48,6 +63,8 @@ struct BenchReport {
     double compile_ms = 0.0;     ///< before the first frame, for all programs that the level needs
     std::optional<PipelineTimes> stages = {};  ///< with --bottleneck
     std::vector<BenchSeries> series = {};
+    std::vector<BenchTraffic> traffic = {};  ///< of the last frame, in the order of its passes
+    std::vector<BenchTarget> targets = {};   ///< of the last frame
 };
 
 /// Returns the series of that name, adding it on first use.
@@ -56,6 +73,8 @@ find_series(BenchReport& report, BenchKind kind, BenchClock clock, std::string_v
 
 /// A text table under a summary of the run, slowest first within each kind.
 [[nodiscard]] std::string bench_table(const BenchReport& report);
+/// A text table of what passes read and write, and of the render targets, largest first.
+[[nodiscard]] std::string traffic_table(const BenchReport& report);
 /// The schema is in `limn bench --help`.
 [[nodiscard]] std::string bench_json(const BenchReport& report);
 /// kind,name,clock,median_ms,p95_ms,max_ms

@@ -125,6 +125,9 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
            "--only", options.only, "`particles`, `faces`, `characters` only: measure one part")
         ->type_name("PART");
     app->add_flag(
+        "--targets", options.targets,
+        "also list what each pass reads and writes, and the render targets with their formats");
+    app->add_flag(
         "--bottleneck", options.bottleneck,
         "also measure what the frame waits for: application, geometry or rasterization");
     add_integer(
@@ -146,7 +149,9 @@ JSON: {"scene", "size": [w, h], "frames", "warmup", "threads", "gl": {"renderer"
 "memory": {"resident_begin_mib", "resident_mib", "heap_begin_mib", "heap_mib", "gpu_mib"},
 "counts": {"entities", "boxes_tested", "instances", "draws", "triangles", "programs", "compiled"}, "compile_ms",
 with --bottleneck "stages": {"application_ms", "geometry_ms", "rasterization_ms"}, and arrays
-"frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"}}
+"frame", "systems", "passes" of {"name", "clock": "cpu" or "gpu", "median_ms", "p95_ms", "max_ms"},
+"traffic" of {"pass", "read_mib", "written_mib"}, if each texel is read and written once, and
+"targets" of {"name", "format", "bytes_per_pixel", "size", "mib"}}
 CSV: kind,name,clock,median_ms,p95_ms,max_ms
 
 The scene `lights` is measured with 16, 64 ... 4096 lights, with every method of rendering.lights,
@@ -216,6 +221,7 @@ Examples:
   limn bench surfaces --size 640x360 --frames 40
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench gallery --size 320x180 --frames 30 --bottleneck
+  limn bench museum --frames 10 --targets
   limn bench stress-instances --frames 600 --json numbers.json
   limn bench particles --csv particles.csv --svg particles.svg
   limn bench particles --only growth --most 100000

@@ -148,6 +148,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.obfuscating-point", "lamp that dazzles as far as it is visible"},
     {"engine.object-step", "init, step and draw of an object"},
     {"engine.object-text", "level file format"},
+    {"engine.opt-framebuffer", "frame buffer memory traffic, formats of render targets"},
     {"engine.opt-texture", "texture compression, BC5, BC7, DDS, mip levels"},
     {"engine.opt-vertex", "order of triangles for the vertex cache, ACMR"},
     {"engine.panorama", "panorama, skybox, backdrop of distant hills"},
