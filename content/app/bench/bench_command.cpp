@@ -1,6 +1,7 @@
 #include "content/app/bench/bench_command.h"
 
 #include "content/app/bench/bench_fakephong.h"
+#include "content/app/bench/bench_forms.h"
 #include "content/app/bench/bench_lens.h"
 #include "content/app/bench/bench_lights.h"
 #include "content/app/bench/bench_report.h"
@@ -40,6 +41,7 @@ constexpr const char* kParticlesName = "particles";  ///< likewise: particle poo
 constexpr const char* kFacesName = "faces";          ///< likewise: a crowd of heads
 constexpr const char* kCharactersName = "characters";  ///< likewise: poses of crowds
 constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
+constexpr const char* kFormsName = "forms";          ///< not a scene: forms of a shader
 constexpr const char* kTablesName = "tables";        ///< not a scene: hash tables
 constexpr const char* kSurfacesName = "surfaces";    ///< not a scene: kinds of surface detail
 constexpr const char* kFakePhongName = "fakephong";  ///< not a scene: the methods of shading
@@ -112,6 +114,13 @@ Status run_surfaces_bench(const BenchOptions& options) {
     const SurfaceBench bench = LIMN_TRY(measure_surfaces(options, headless));
     return write_results(
         options, surface_bench_table(bench), surface_bench_json(bench), surface_bench_csv(bench));
+}
+
+Status run_forms_bench(const BenchOptions& options) {
+    const HeadlessRenderer headless = LIMN_TRY(create_renderer_for(options));
+    const FormBench bench = LIMN_TRY(measure_forms(*headless.device, options.size, options.frames));
+    return write_results(
+        options, form_bench_table(bench), form_bench_json(bench), form_bench_csv(bench));
 }
 
 Status run_tables_bench(const BenchOptions& options) {
@@ -251,7 +260,8 @@ Status check_bench_options(const BenchOptions& options) {
     }
     const bool is_scene = !is_program(options.scene) && options.scene != kLensName
                           && options.scene != kSurfacesName && options.scene != kTablesName
-                          && options.scene != kFakePhongName && options.scene != kLightsScene;
+                          && options.scene != kFormsName && options.scene != kFakePhongName
+                          && options.scene != kLightsScene;
     if (options.bottleneck && !is_scene) {
         return fail("--bottleneck is for scenes, found `{}`", options.scene);
     }
@@ -278,6 +288,9 @@ Status run_bench(const BenchOptions& options) {
     }
     if (options.scene == kSurfacesName) {
         return run_surfaces_bench(options);
+    }
+    if (options.scene == kFormsName) {
+        return run_forms_bench(options);
     }
     if (options.scene == kTablesName) {
         return run_tables_bench(options);

@@ -174,6 +174,13 @@ JSON: {"scene", "size", "frames", "warmup", "threads", "gl", "points": [{"detail
 "gbuffer_ms", "ratio"}]}
 CSV: detail,frames,median_ms,gbuffer_ms,ratio
 
+`limn bench forms` draws a ball by the cheaper forms of a shader that the book's chapter 11 advises, each
+beside the plain form: matrices multiplied on the CPU, the vector to the light per vertex, one
+normalization to tangent space, acos from a table. "shade" and "angle" are the largest
+differences of the diffuse share and of angles [rad] in the image; the best of --frames counts.
+JSON: {"size", "frames", "threads", "gl", "points": [{"form", "ms", "plain_ms", "ratio", "shade", "angle"}]}
+CSV: form,ms,plain_ms,ratio,shade,angle
+
 `limn bench tables` looks up names in the hash tables of the book's chapter 11 and in
 std::unordered_map, --frames times each; the best counts. "compared" is keys per lookup, "time" a
 ratio to std::unordered_map.
@@ -219,6 +226,7 @@ Examples:
   limn bench lens --size 640x360 --frames 100
   limn bench fakephong --size 640x360 --frames 9
   limn bench surfaces --size 640x360 --frames 40
+  limn bench forms --size 640x360 --frames 40
   limn bench gallery --size 640x360 --set glow.strength=0.1
   limn bench gallery --size 320x180 --frames 30 --bottleneck
   limn bench museum --frames 10 --targets
