@@ -205,6 +205,7 @@ class Renderer {
     std::size_t view_count_ = 0;  ///< of this frame
     std::uint64_t assets_ = 0;    ///< identity of those that were uploaded
     FrameClock clock_;
+    float warm_up_plain_below_ = 0;  ///< of RenderItems, where it is not 0
     const gpu::Program* add_ = nullptr;
 };
 
@@ -265,15 +266,20 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
     begin(kCameraView, world, view);
     const std::vector<RenderView> views = find_warm_up_views(world, view);
     struct Round {
-        bool all_lights;
-        bool finest;
+        bool all_lights = false;
+        bool finest = false;
+        float plain_below = 0;
     };
-    std::vector<Round> rounds = {{false, false}};
+    std::vector<Round> rounds(1);
     if (any_light_off(world)) {
-        rounds.push_back({true, false});
+        rounds.push_back({.all_lights = true});
     }
     if (world.query<const MeshLevels, const Deformed>().count() > 0) {
-        rounds.push_back({true, true});
+        rounds.push_back({.all_lights = true, .finest = true});
+    }
+    const auto* const rendering = world.find_resource<Rendering>();
+    if (rendering != nullptr && rendering->plain_below > 0) {
+        rounds.push_back({.all_lights = true, .plain_below = INFINITY});
     }
     const int total = static_cast<int>(rounds.size() * views.size());
     int done = 0;
@@ -281,6 +287,7 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
         forget_frames();  // so that effects request all their programs, and draw their caches
         frame_.all_lights = round.all_lights;
         shapes_.finest = round.finest;
+        warm_up_plain_below_ = round.plain_below;
         for (const RenderView& one : views) {
             if (progress) {
                 progress(done++, total);
@@ -331,8 +338,10 @@ void Renderer::update_assets() {
     frame_.assets_identity = assets_;
     frame_.assets_replaced = replaced;
     const auto* rendering = frame_.world->find_resource<Rendering>();
-    materials_.update(
-        assets, replaced, rendering != nullptr ? rendering->surface_detail : DetailLimit::Full);
+    const Rendering settings = rendering != nullptr ? *rendering : Rendering{};
+    materials_.update(assets, replaced, settings.surface_detail, settings.plain_below > 0);
+    items_.plain_below =
+        frame_.warm_up && settings.plain_below > 0 ? warm_up_plain_below_ : settings.plain_below;
     const bool viewed = frame_.world->find_resource<CurvatureView>() != nullptr;
     meshes_.update(assets.meshes, materials_.curves() || viewed);
 }

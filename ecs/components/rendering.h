@@ -156,6 +156,7 @@ struct Rendering {
     bool screen_interpolation = false;
     HardwareDefects hardware = {};
     DetailLimit surface_detail = DetailLimit::Full;
+    float plain_below = 0;  ///< size in the image, see below [px]
     LobeSource lobes = LobeSource::Computed;
     Normalization normalization = Normalization::Computed;
     LightLoops light_loops = LightLoops::Uniform;
@@ -203,6 +204,13 @@ LIMN_FIELDS(Rendering) {
         .doc = "the dearest way in which surfaces show detail: materials whose `detail` is dearer "
                "fall to it",
         .values = kDetailLimitNames);
+    LIMN_FIELD(
+        plain_below,
+        "surfaces whose box is smaller than this in the image have neither normal maps nor relief, "
+        "in every image alike, whatever was drawn before, unless they have normal_mips; 0: all "
+        "have "
+        "theirs",
+        "px", 0, 16384);
     LIMN_FIELD(
         lobes,
         .doc = "the light that blinn, phong, skin and strand materials reflect: computed, looked "

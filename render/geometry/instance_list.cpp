@@ -19,7 +19,8 @@
 #include <cstring>
 #include <tuple>
 
-// Techniques: engine.batching, engine.multi-material, engine.visibility-sets, shade.batching,
+// Techniques: engine.batching, engine.lod-shader, engine.multi-material, engine.visibility-sets,
+// shade.batching,
 //     shade.pipeline-model
 
 namespace limn {
@@ -229,6 +230,9 @@ void InstanceCollector::count_block(
             && !is_needed(block, i, selection.depth_row, selection.pixels_per_unit)) {
             continue;
         }
+        if (selection.casters == nullptr && items.plain_below > 0) {
+            key = sized_key(items, block, i, selection);
+        }
         if (selection.casters != nullptr && selection.casters->detail > 0) {
             key |= static_cast<DrawKey>(level_of(items, block, i, *selection.casters)) << kLevelBit;
         }
@@ -237,6 +241,23 @@ void InstanceCollector::count_block(
                                + glm::dot(glm::abs(selection.forward), boxes.half(i));
         work.local[i] = table.count(key, far_side);
     }
+}
+
+DrawKey InstanceCollector::sized_key(
+    const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
+    const Selection& selection) {
+    const MaterialPool& materials = items.materials();
+    const std::uint32_t record = materials.record_of(block.surfaces[i].material);
+    const std::uint32_t plain = materials.plain_record_of(record);
+    const float depth =
+        glm::dot(Vec3(selection.depth_row), block.boxes.center(i)) + selection.depth_row.w;
+    const float pixels = 2 * glm::length(block.boxes.half(i)) * selection.pixels_per_unit;
+    if (plain == record || !(pixels < items.plain_below * depth)) {
+        return block.keys[i];
+    }
+    DrawState state = draw_state(block.keys[i]);
+    state.batch = materials.batch_of(plain);
+    return make_draw_key(state);
 }
 
 std::uint32_t InstanceCollector::level_of(
@@ -302,7 +323,10 @@ void InstanceCollector::write_block(
         if (selection.casters != nullptr) {
             push_back_caster(items, block, i, kind.key, *selection.casters, a);
         }
-        const std::uint32_t record = materials.record_of(block.surfaces[i].material);
+        std::uint32_t record = materials.record_of(block.surfaces[i].material);
+        if (materials.batch_of(record) != draw_state(kind.key).batch) {
+            record = materials.plain_record_of(record);
+        }
         instances[slot] = {
             {a.row[0], a.row[1], a.row[2]},
             record,

@@ -144,6 +144,10 @@ class InstanceCollector {
     static std::uint32_t level_of(
         const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
         const CasterVolume& volume);
+    /// The key of an item with the material that it has at its size in the image.
+    static DrawKey sized_key(
+        const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
+        const Selection& selection);
     /// Moves a caster away from the light by the geometric error of its level.
     static void push_back_caster(
         const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, DrawKey key,

@@ -140,6 +140,8 @@ class RenderItems {
     /// Draw only a few triangles and instances of each mesh: to compile what draws them, or to
     /// measure the others (FrameRequest::few_triangles).
     bool sampled = false;
+    /// Rendering::plain_below [px].
+    float plain_below = 0;
 
     [[nodiscard]] std::size_t block_count() const { return count_; }
     [[nodiscard]] const RenderItemBlock& block(std::size_t i) const { return *blocks_[i]; }

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-// Techniques: relief.selection
+// Techniques: engine.lod-shader, relief.selection
 
 namespace limn {
 namespace {
@@ -40,6 +40,22 @@ SurfaceDetail limited_detail(SurfaceDetail detail, DetailLimit limit) {
     return limit >= kExceeded[static_cast<std::size_t>(detail)]
                ? kFallsTo[static_cast<std::size_t>(limit)]
                : detail;
+}
+
+bool has_fine_detail(const Material& material) {
+    const auto is_used = [](const TextureSlot& slot) { return slot.image.index != kNoAsset; };
+    return material.detail < kReliefBoxDetail && material.normal_mips == NormalMips::Plain
+           && (is_used(material.normal_texture) || is_used(material.relief_texture)
+               || is_used(material.clearcoat_normal_texture));
+}
+
+Material without_fine_detail(Material material) {
+    material.detail = SurfaceDetail::Flat;
+    material.bump_shadow = BumpShadow::None;
+    material.normal_texture.image = {};
+    material.relief_texture.image = {};
+    material.clearcoat_normal_texture.image = {};
+    return material;
 }
 
 }  // namespace limn

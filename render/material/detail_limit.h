@@ -9,4 +9,11 @@ namespace limn {
 /// not dearer stay as they are.
 [[nodiscard]] SurfaceDetail limited_detail(SurfaceDetail detail, DetailLimit limit);
 
+/// Whether a material has normal maps or relief that are invisible from afar: not those whose mip
+/// levels widen highlights (Material::normal_mips).
+[[nodiscard]] bool has_fine_detail(const Material& material);
+/// The same material without: what is left of it where it is small in the image
+/// (engine.lod-shader).
+[[nodiscard]] Material without_fine_detail(Material material);
+
 }  // namespace limn

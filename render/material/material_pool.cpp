@@ -9,6 +9,7 @@
 #include "render/shaders/material_maps_gpu.h"
 
 #include <algorithm>
+#include <numeric>
 
 // Techniques: engine.material-bind, shade.batching, tex.sampling
 
@@ -87,7 +88,7 @@ MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
               : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
       images_(device), record_texture_("materials", GL_RGBA32F) {}
 
-void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
+void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit, bool plain) {
     if (fresh) {
         images_.clear();
         material_count_ = 0;
@@ -95,7 +96,8 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
     }
     images_.refresh(assets.images);
     const bool more_images = images_.size() < assets.images.size();
-    if (!fresh && !more_images && limit_ == limit && material_version_ == assets.material_version
+    if (!fresh && !more_images && limit_ == limit && plain_ == plain
+        && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {
         return;
     }
@@ -126,7 +128,16 @@ void MaterialPool::update(const Assets& assets, bool fresh, DetailLimit limit) {
         drawn.detail = limited_detail(drawn.detail, limit);
         add_material(drawn);
     }
+    plain_of_.resize(records_.size());
+    std::iota(plain_of_.begin(), plain_of_.end(), 0u);
+    for (std::uint32_t i = 0; plain && i < assets.materials.size(); ++i) {
+        if (has_fine_detail(assets.materials[i])) {
+            plain_of_[i + 2] = static_cast<std::uint32_t>(records_.size());
+            add_material(without_fine_detail(assets.materials[i]));
+        }
+    }
     limit_ = limit;
+    plain_ = plain;
     material_count_ = assets.materials.size();
     material_version_ = assets.material_version;
     upload_records();

@@ -45,11 +45,19 @@ class MaterialPool {
     /// version changed. `fresh`: the assets were replaced since the last call. Materials with
     /// dearer surface detail than `limit` fall to it. A map that would need one texture array more
     /// than a material has units is left out, with an error.
-    void update(const Assets& assets, bool fresh, DetailLimit limit = DetailLimit::Full);
+    /// `plain`: materials with fine detail also get a record without, plain_record_of().
+    void update(
+        const Assets& assets, bool fresh, DetailLimit limit = DetailLimit::Full,
+        bool plain = false);
 
     /// Record index of a material; 0 for none, 1 for an unknown one.
     [[nodiscard]] std::uint32_t record_of(MaterialId id) const {
-        return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
+        return id.index == kNoAsset ? 0 : id.index + 2 < plain_of_.size() ? id.index + 2 : 1;
+    }
+    /// The record of the same material without normal maps and relief, for what is small in the
+    /// image; the same one if it has none.
+    [[nodiscard]] std::uint32_t plain_record_of(std::uint32_t record) const {
+        return plain_of_[record];
     }
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
     /// Counts the changes of records and batches.
@@ -103,6 +111,7 @@ class MaterialPool {
     std::vector<MapBindings> textures_;
     std::vector<SurfaceBatch> batches_;
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
+    std::vector<std::uint32_t> plain_of_;  ///< by record of a material
     std::vector<std::uint8_t> models_;     ///< by record
     std::vector<float> displacements_;     ///< by record
     std::vector<layout::MaterialRecord> records_;
@@ -112,6 +121,7 @@ class MaterialPool {
     std::size_t material_count_ = 0;
     std::uint64_t material_version_ = 0;
     DetailLimit limit_ = DetailLimit::Full;
+    bool plain_ = false;
     std::uint64_t revision_ = 0;
     ShadingModelSet shading_models_ = 0;
     MaterialLayers layers_ = 0;

@@ -141,6 +141,7 @@ inline constexpr TechniqueName kTechniqueNames[] = {
     {"engine.light-loops", "single-pass and multi-pass lighting"},
     {"engine.light-object", "light object"},
     {"engine.lod-mesh", "level of detail of meshes, LOD"},
+    {"engine.lod-shader", "level of detail of shaders, simpler materials in the distance"},
     {"engine.look-at", "look-at frame"},
     {"engine.main-loop", "main loop, fixed time step"},
     {"engine.material-bind", "material binding"},
