@@ -1,5 +1,6 @@
 #include "systems/orbit_camera_system.h"
 
+#include "systems/characters/view_bodies.h"
 #include "systems/motion_kernels.h"
 
 #include <algorithm>
@@ -113,7 +114,8 @@ void update_orbit_cameras(
         Without<Parent>>
         cameras,
     Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> teleporting,
-    Res<const Input> input, Res<const FrameTime> time, GroundQueries grounds) {
+    Query<const Pose, const WorldTransform> characters, Res<const Input> input,
+    Res<const FrameTime> time, GroundQueries grounds) {
     std::optional<std::vector<PlacedGround>> placed;  // for cameras that need them
     cameras.each([&](Entity entity, OrbitCamera& orbit, Transform& transform, WorldTransform& world,
                      PreviousWorldTransform& previous, const Camera* camera) {
@@ -133,7 +135,13 @@ void update_orbit_cameras(
         target.row[0].w = point.x;
         target.row[1].w = point.y;
         target.row[2].w = point.z;
-        const Vec3 wanted = orbit_position(target, orbit.azimuth, orbit.elevation, orbit.distance);
+        Vec3 wanted = orbit_position(target, orbit.azimuth, orbit.elevation, orbit.distance);
+        std::vector<JointPlaces> people;
+        if (orbit.clearance > 0) {
+            people = find_bodies(
+                characters, orbit.target, point, 1.5f * orbit.distance + orbit.clearance);
+            wanted = look_over_bodies(people, point, wanted, orbit.clearance);
+        }
 
         const bool jumps =
             time->frame == 0 || teleporting.contains(entity) || teleporting.contains(orbit.target);
@@ -142,6 +150,8 @@ void update_orbit_cameras(
         if (orbit.clearance > 0) {
             placed = placed ? std::move(placed) : place_grounds(grounds);
             transform.position = clear_view(*placed, point, transform.position, orbit.clearance);
+            transform.position =
+                keep_off_bodies(people, point, transform.position, orbit.clearance);
         }
         const Vec3 back = transform.position - point;
         if (back != Vec3(0)) {

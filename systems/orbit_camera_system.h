@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/input.h"
 #include "ecs/components/time.h"
@@ -24,21 +25,23 @@ namespace limn {
 // Graphics Hardware" (2005), chapter 11; the book's code covers factor * dt of the distance, which
 // is never rigid (lag_position_legacy).
 
-/// Moves every OrbitCamera. In the first frame and after a Teleport of camera or target it moves
-/// rigidly and has no velocity. A null target is the world origin; if the target was destroyed, the
-/// camera stays.
 /// Where a camera that wants to be at `wanted` sees `point` without a mesh between them,
 /// `clearance` before it [m]: rays to the camera and to the corners of a square about it.
 [[nodiscard]] Vec3 clear_view(
     std::span<const PlacedGround> grounds, const Vec3& point, const Vec3& wanted, float clearance);
 
+/// Moves every OrbitCamera. In the first frame and after a Teleport of camera or target it moves
+/// rigidly and has no velocity. A null target is the world origin; if the target was destroyed, the
+/// camera stays. One with a clearance looks over the people between it and its target and enters
+/// none (systems/characters/view_bodies.h).
 void update_orbit_cameras(
     Query<
         OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
         Without<Parent>>
         cameras,
     Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> teleporting,
-    Res<const Input> input, Res<const FrameTime> time, GroundQueries grounds);
+    Query<const Pose, const WorldTransform> characters, Res<const Input> input,
+    Res<const FrameTime> time, GroundQueries grounds);
 
 /// Direction on the unit sphere about the target: azimuth rotates from `ahead` toward `side`,
 /// elevation raises it toward `above`.
