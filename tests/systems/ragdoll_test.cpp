@@ -287,6 +287,37 @@ TEST_CASE("ragdoll: muscles hold the pose of the clip, limp ones do not") {
     CHECK(bends[0] > 0.4f);
 }
 
+TEST_CASE("ragdoll: who is thrown bends knees and hips and puts the arms ahead, limp ones do not") {
+    for (const float collapse : {0.15f, 0.0f}) {
+        CAPTURE(collapse);
+        Stage stage({.gravity = 0, .collapse = collapse});
+        stage.world.add(stage.person, ClipPlayer{.clip = {0}, .speed = 0});
+        stage.step(2);
+        stage.ragdoll().push = {0, 2, 0};
+        stage.step(35);
+        const auto angle = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+            const Vec3 first = glm::normalize(stage.joint(b) - stage.joint(a));
+            const Vec3 second = glm::normalize(stage.joint(d) - stage.joint(c));
+            return std::acos(std::clamp(glm::dot(first, second), -1.0f, 1.0f));
+        };
+        const Vec3 ahead =
+            glm::cross(stage.joint(9) - stage.joint(16), stage.joint(2) - stage.joint(0));
+        for (const std::size_t side : {std::size_t{0}, std::size_t{7}}) {
+            const float knee = angle(9 + side, 10 + side, 10 + side, 11 + side);
+            const float elbow = angle(6 + side, 7 + side, 7 + side, 8 + side);
+            const float hip = angle(2, 0, 9 + side, 10 + side);
+            const Vec3 hand = stage.joint(8 + side) - stage.joint(6 + side);
+            const bool bends = knee > 0.5f && elbow > 0.5f && hip > 0.3f
+                               && glm::dot(hand, glm::normalize(ahead)) > 0.15f;
+            CHECK(bends == (collapse > 0));
+        }
+        // It does so by its own forces, and has given up after six times the collapse.
+        CHECK(double(stage.state().velocities[0].y) == near(2).epsilon(0.15));
+        stage.step(120);
+        CHECK(stage.fastest() < 2.5f);
+    }
+}
+
 TEST_CASE("ragdoll: a ball that hits it, or a blast, makes it fall") {
     Stage hit({.trip_speed = 2});
     hit.add_floor();

@@ -3,6 +3,7 @@
 #include "ecs/base/gravity.h"
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
+#include "systems/animation/ik/elbow_circle.h"
 #include "systems/animation/ik/placements.h"
 #include "systems/animation/ragdoll/ragdoll_scene.h"
 #include "systems/animation/ragdoll/ragdoll_solver.h"
@@ -27,6 +28,9 @@ constexpr float kSleepTime = 0.5f;      // [s]
 constexpr double kTouchMargin = 0.005;  // within which a capsule touches [m]
 constexpr double kMaxStartSpeed = 50;   // taken over from the animation [m/s], [rad/s]
 constexpr double kMuscleRate = 25;      // natural frequency at half stiffness [rad/s]
+constexpr double kBraceRate = 7;        // likewise, of a body that braces itself, by eye
+constexpr float kBraceTime = 6;         // for which it does [collapse times]
+constexpr float kBraceBend = 0.35f;     // of hinges, of their range
 
 RigidQuat to_rigid(const Quat& q) {
     return glm::normalize(RigidQuat(q));
@@ -242,16 +246,30 @@ class RagdollStepper {
         return true;
     }
 
-    /// Natural frequency of the muscles [rad/s]: stiff at the switch, then as `stiffness` says.
-    [[nodiscard]] double muscles() const {
+    /// Natural frequencies of the muscles [rad/s].
+    struct Muscles {
+        double hold = 0;   ///< toward the animation: stiff at the switch, then as `stiffness` says
+        double brace = 0;  ///< toward bent joints, as long as a fall takes people by surprise
+    };
+    [[nodiscard]] Muscles muscles() const {
         const float collapse = finite_or(ragdoll_.collapse, 0);
-        const float left = collapse > 0 ? std::max(1 - state_.time / collapse, 0.0f) : 0.0f;
+        const float since = collapse > 0 ? state_.time / collapse : kBraceTime;
         const float own = std::clamp(finite_or(ragdoll_.stiffness, 0), 0.0f, 1.0f);
-        const double stiffness = static_cast<double>(own + (1 - own) * left);
-        return kMuscleRate * stiffness / (1.001 - stiffness);
+        const double stiffness = static_cast<double>(own + (1 - own) * std::max(1 - since, 0.0f));
+        const double left = static_cast<double>(std::clamp(2 - 2 * since / kBraceTime, 0.0f, 1.0f));
+        return {kMuscleRate * stiffness / (1.001 - stiffness), kBraceRate * (1 - stiffness) * left};
     }
 
-    void aim_muscles(RagdollScene& scene) const {
+    /// Relative to rest: hinges bend a little, cones turn to their middles. So knees and hips give
+    /// way, and arms go out and ahead.
+    static Quat braced(const RagdollLimit& limit) {
+        if (limit.kind == RagdollJointKind::Hinge) {
+            return rotation_about(limit.axis, limit.min + kBraceBend * (limit.max - limit.min));
+        }
+        return rotation_between(limit.bone, limit.center);
+    }
+
+    void aim_muscles(const Muscles& muscles, RagdollScene& scene) const {
         thread_local LocalPose pose;  // reused between characters
         thread_local std::vector<float> weights;
         thread_local std::vector<Quat> turns;
@@ -268,9 +286,14 @@ class RagdollStepper {
             turns[j] = parent < 0 ? pose.rotations[j]
                                   : turns[static_cast<std::size_t>(parent)] * pose.rotations[j];
         }
+        const double hold = muscles.hold * muscles.hold;
+        const auto share =
+            static_cast<float>(hold / std::max(hold + muscles.brace * muscles.brace, 1e-12));
         for (RagdollJoint& joint : scene.joints) {
             const Quat& parent = turns[state_.joints[joint.parent]];
-            joint.target = to_rigid(glm::conjugate(parent) * turns[state_.joints[joint.child]]);
+            const Quat held = glm::conjugate(parent) * turns[state_.joints[joint.child]];
+            const Quat bent = Quat(joint.rest) * braced(joint.limit);
+            joint.target = to_rigid(slerp(bent, held, share));
         }
     }
 
@@ -351,7 +374,8 @@ class RagdollStepper {
         load(scene);
         outcome_ = {.meets = !planes_.empty(), .is_free = true, .mass = size_.mass};
         apply_push(scene);
-        const double rate = muscles();
+        const Muscles muscle = muscles();
+        const double rate = std::hypot(muscle.hold, muscle.brace);
         bool is_pulled = rate > 0;
         for (RigidCapsule& body : scene.bodies) {
             const Vec3 pull =
@@ -377,7 +401,7 @@ class RagdollStepper {
             return;
         }
         if (rate > 0) {
-            aim_muscles(scene);
+            aim_muscles(muscle, scene);
         }
         RagdollOptions options;
         options.gravity =
