@@ -197,6 +197,67 @@ TEST_CASE(
     CHECK(slide < 0.002f);
 }
 
+TEST_CASE(
+    "motion match: a foot comes down before it stands, also where clips change"
+    * technique("char.blend")) {
+    MatchStage stage;
+    stage.step(2);
+    const WalkBody body = find_walk_body(make_stick_person());
+    std::array<bool, 2> stood{};
+    int stands = 0;
+    float highest = 0;
+    float farthest = 0;
+    for (int i = 0; i < 3000; ++i) {
+        // Changes its mind in the middle of steps.
+        const auto k = static_cast<float>(i / 23);
+        stage.go({3 * std::sin(2.4f * k), 0, 3 * std::cos(1.7f * k)});
+        stage.step();
+        for (std::size_t side = 0; side < 2; ++side) {
+            const MatchFoot& foot = stage.state().feet[side];
+            const std::array<Vec3, 2> points = stage.foot_points(body.legs[side]);
+            if (foot.planted == 1 && !stood[side]) {
+                const float height = std::min(points[0].y, points[1].y - body.legs[side].ball.y);
+                highest = std::max(highest, height);
+                farthest = std::max(farthest, glm::distance(foot.place * kFlat, foot.aim * kFlat));
+                ++stands;
+            }
+            stood[side] = foot.planted == 1;
+        }
+    }
+    CHECK(stands > 60);
+    CHECK(highest < 0.06f);  // heels come first, with the ball up
+    CHECK(farthest < 0.3f * body.legs[0].length);
+}
+
+TEST_CASE("motion match: the root lags for a third of a blend, then it moves as the clip does") {
+    MatchStage stage;
+    stage.step(2);
+    const float lag = 0.3f * MotionMatch{}.blend;
+    MotionMatchState last = stage.state();
+    Transform from = stage.at();
+    float off = 0;
+    float off_lagging = 0;
+    int exact = 0;
+    run_tour(stage, [&](int) {
+        const MotionMatchState& now = stage.state();
+        if (now.transitions == last.transitions && now.time > last.time) {
+            const MatchClip& clip = stage.database().clips[now.clip];
+            const GroundMove move =
+                compose(inverse(root_of(clip, last.time)), root_of(clip, now.time));
+            const Vec3 way = from.rotation * Vec3(move.way.x, 0, move.way.y);
+            const float error = glm::distance(stage.at().position - from.position, way) / kFrame;
+            const bool lags = last.blending != 0 && last.clock < lag;
+            (lags ? off_lagging : off) = std::max(lags ? off_lagging : off, error);
+            exact += lags ? 0 : 1;
+        }
+        last = now;
+        from = stage.at();
+    });
+    CHECK(exact > 500);
+    CHECK(off < 1e-3f);
+    CHECK(off_lagging > 0.2f);
+}
+
 TEST_CASE("motion match: transitions do not jump, cuts do" * technique("char.blend")) {
     std::array<float, 2> jumps{};
     std::array<std::uint32_t, 2> counts{};

@@ -28,8 +28,10 @@ constexpr float kArc = 0.25f;           // height of a way over the ground [way]
 constexpr float kHighestArc = 0.12f;    // [leg lengths]
 constexpr float kDeepestSink = 0.04f;   // of the hips above a foot [leg lengths]
 constexpr float kLandingSink = 0.004f;  // likewise, where a foot lands
-constexpr float kMaxFootRate = 20.0f;   // of an offset [m/s]
-constexpr float kMaxFootSpin = 60.0f;   // [rad/s]
+constexpr float kLandingHeight =
+    0.02f;                             // above the clip's foot, below which one lands [leg lengths]
+constexpr float kMaxFootRate = 20.0f;  // of an offset [m/s]
+constexpr float kMaxFootSpin = 60.0f;  // [rad/s]
 
 float yaw_of(const Quat& rotation) {
     return 2 * std::atan2(rotation.y, rotation.w);
@@ -206,6 +208,9 @@ void step_foot(
     foot.clock = std::min(foot.clock + dt, 1e3f);
     foot.hold = std::clamp(foot.hold + (was_planted ? dt : -dt) / kHoldTime, 0.0f, 1.0f);
     show();
+    // It comes down before it stands.
+    const float up = foot.place.y - aim_place.y;
+    now.contact = now.contact && (was_planted || up < kLandingHeight * aim.leg * uniform_scale(at));
     if (was_planted != now.contact) {
         capture_foot(now, at, rate, foot);
         foot.planted = aim.contact && pulled ? kPulledOff : foot.planted;
