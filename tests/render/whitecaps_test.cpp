@@ -2,12 +2,17 @@
 #include "ecs/components/water.h"
 #include "ecs/components/water_look.h"
 #include "ecs/components/water_waves.h"
+#include "render/water/foam_pattern.h"
 #include "systems/water/water_wave_table.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/technique.h"
 
+#include <glm/common.hpp>
+
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace limn::test::whitecaps_test {
@@ -41,19 +46,23 @@ struct Sea : Scene {
         frequency = table.lines[0].frequency;
         sea = world.create(water, waves, table, WorldTransform{at({0, 0, 0})});
     }
-    /// Mean of each column of pixels, from -x to +x.
-    std::vector<float> columns(const WaterLook& look) {
+    /// Columns run from -x to +x, rows from -z to +z.
+    gpu::FloatImage image(const WaterLook& look) {
         world.add(sea, WaterLook{look});
         const float half = std::sqrt(0.5f);
         const Quat turned(std::cos(direction / 2), 0, -std::sin(direction / 2), 0);
         const Affine pose = affine_from({0, kHeight, 0}, turned * Quat(half, -half, 0, 0), Vec3(1));
-        const gpu::FloatImage image = radiance(make_render_view(
+        return radiance(make_render_view(
             {.fov_y = radians(90.0f), .near = 0.05f}, pose, pose,
             {.width = kSize, .height = kSize}));
+    }
+    /// Mean of each column of pixels.
+    std::vector<float> columns(const WaterLook& look) {
+        const gpu::FloatImage pixels = image(look);
         std::vector<float> means(kSize, 0.0f);
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {
-                means[static_cast<std::size_t>(x)] += image.at(x, y, 0) / kSize;
+                means[static_cast<std::size_t>(x)] += pixels.at(x, y, 0) / kSize;
             }
         }
         return means;
@@ -77,7 +86,57 @@ float whitened(float dark, float cover) {
     return dark + (kFoam - dark) * white;
 }
 
+/// The pattern of breaking crests at a point at rest, bilinear, 0 .. 1: a tile has a side of 53 m.
+float crest_pattern(const std::vector<std::uint8_t>& texels, int side, const Vec2& rest) {
+    const Vec2 at = rest / 53.0f * static_cast<float>(side) - 0.5f;
+    const IVec2 first = IVec2(glm::floor(at));
+    const Vec2 share = at - Vec2(first);
+    float sum = 0;
+    for (int i = 0; i < 4; ++i) {
+        const IVec2 step = {i % 2, i / 2};
+        const IVec2 texel = ((first + step) % side + side) % side;
+        const Vec2 part = Vec2(step) * share + Vec2(1 - step.x, 1 - step.y) * (1.0f - share);
+        sum += part.x * part.y
+               * static_cast<float>(texels[static_cast<std::size_t>(texel.y * side + texel.x)]);
+    }
+    return sum / 255;
+}
+
 }  // namespace
+
+TEST_CASE_FIXTURE(
+    Sea, "whitecaps: a crest breaks in patches, where the pattern is high, and not all along"
+             * technique("water.whitecaps")) {
+    constexpr float kCrestJacobian = 1 - kSteepness;
+    constexpr int kLevel = 3;
+    const std::vector<std::uint8_t> texels = make_foam_pattern()[kLevel];
+    constexpr float kShift = 38;  // of the sea, to where the pattern is both high and low [m]
+    world.add(sea, WorldTransform{at({0, 0, -kShift})});
+    const gpu::FloatImage dark = image({});
+    // Cover 0 where the pattern is below 0.25, and 1 above 0.65.
+    const gpu::FloatImage pixels =
+        image({.foam_below = kCrestJacobian + 0.125f, .foam_decay = 0.01f});
+    const auto column = static_cast<int>(column_behind(0));
+    const float to_water = kHeight - kSteepness / number;
+    int bare = 0;
+    int covered = 0;
+    for (int y = 0; y < kSize; ++y) {
+        const float z = ((static_cast<float>(y) + 0.5f) / kSize * 2 - 1) * to_water;
+        const float level =
+            crest_pattern(texels, kFoamPatternSide >> kLevel, {0.25f * kLength, z + kShift});
+        CAPTURE(z);
+        CAPTURE(level);
+        if (level < 0.23f) {
+            CHECK(pixels.at(column, y, 0) < dark.at(column, y, 0) + 0.002f);
+            ++bare;
+        } else if (level > 0.67f) {
+            CHECK(pixels.at(column, y, 0) == test::near(kFoam).epsilon(0.02));
+            ++covered;
+        }
+    }
+    CHECK(bare > 8);
+    CHECK(covered > 8);
+}
 
 TEST_CASE_FIXTURE(
     Sea, "whitecaps: foam of crests that have passed is left to its decay"

@@ -323,6 +323,33 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "water spray: where waves hit a body, drops are as fast as the water on its orbit"
+    * technique("water.impact-spray")) {
+    // In deep water orbits are circles: at each phase the speed is A omega, up, along or down.
+    for (const float direction : {0.0f, 0.9f}) {
+        CAPTURE(direction);
+        const WaterWave wave = {.amplitude = 0.8f, .length = 12, .direction = direction};
+        Sea sea(wave, 0);
+        Random random(1, 2, 3, 4);
+        std::vector<SprayDrop> drops;
+        const Affine at = affine_from({1, 0, -2}, Quat(1, 0, 0, 0), Vec3(1));
+        const SprayBody body = {.half = {1.5f, 2, 1.5f}, .world = at, .before = at};
+        for (int i = 0; i < 120; ++i) {
+            fill_wave_table({}, {.waves = {wave}}, i / 30.0, sea.waves);
+            spray_body(
+                sea.surface, {.rate = 4000, .spread = 0}, body, orbital_speed(sea.line()),
+                1.0f / 60, random, drops);
+        }
+        REQUIRE(drops.size() > 300);
+        for (const SprayDrop& drop : drops) {
+            CHECK(
+                glm::length(drop.velocity)
+                == test::near(static_cast<double>(orbital_speed(sea.line()))).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE(
     "water spray: a hull that runs through still water throws up a bow wave, at rest nothing"
     * technique("water.impact-spray")) {
     WaterSurface still;
