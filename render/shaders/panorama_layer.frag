@@ -20,6 +20,27 @@ uniform vec4 color;             // a: opacity
 
 layout(location = 0) out vec4 radiance;
 
+#ifndef PANORAMA_FACES
+const int kMaxTaps = 8;
+
+// Texels of a strip are much wider on screen than they are high. One lookup would blur by the larger number of texels
+// per pixel in both directions, so several follow the longer side of the pixel's footprint.
+vec4 filtered(vec2 uv, vec2 dx, vec2 dy) {
+    vec2 size = vec2(textureSize(image, 0));
+    vec2 lengths = max(vec2(length(dx * size), length(dy * size)), 1e-6);
+    vec2 along = lengths.x > lengths.y ? dx : dy;
+    vec2 across = lengths.x > lengths.y ? dy : dx;
+    float ratio = max(lengths.x, lengths.y) / min(lengths.x, lengths.y);
+    int taps = int(clamp(ceil(ratio), 1.0, float(kMaxTaps)));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < taps; ++i) {
+        vec2 offset = ((float(i) + 0.5) / float(taps) - 0.5) * along;
+        sum += textureGrad(image, uv + offset, across, along / float(taps));
+    }
+    return sum / float(taps);
+}
+#endif
+
 void main() {
     vec3 d = layer_from_world * normalize(view_ray(gl_FragCoord.xy));
 #ifdef PANORAMA_FACES
@@ -36,10 +57,8 @@ void main() {
         dy.x -= round(dy.x);
         scale.x = repeat;
     }
-    vec4 texel = textureGrad(image, scale * uv, scale * dx, scale * dy);
-    if (mapping == kCylindrical && d.y > length(d.xz) * tan(half_angle)) {
-        texel.a = 0.0;  // nothing is above the strip
-    }
+    bool above = mapping == kCylindrical && d.y > length(d.xz) * tan(half_angle);  // the strip, where nothing is
+    vec4 texel = above ? vec4(0.0) : filtered(scale * uv, scale * dx, scale * dy);
 #endif
     radiance = vec4(storable(color.rgb * texel.rgb), color.a * texel.a);
 }

@@ -167,6 +167,33 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    Surroundings,
+    "panorama layer: a strip whose texels are much wider than high keeps its edges sharp"
+        * technique("engine.panorama")) {
+    // A pixel covers 0.7 texels across and 8 down; a stripe and the next are 8 texels apart.
+    constexpr int kStripes = 32;
+    const auto hue = [](double x) { return 0.5 + 0.4 * std::cos(kTurn * kStripes * x); };
+    add_layer(
+        {.image = add(paint(256, 256, [&](double x, double) { return Vec4(hue(x), 0.3, 0, 1); })),
+         .half_angle = radians(15.0f),
+         .repeat = 1});
+    for (const float roll : {0.0f, 90.0f}) {  // of the camera
+        CAPTURE(roll);
+        const Affine pose =
+            affine_from({0, 0, 0}, rotation_about({0, 0, 1}, radians(roll)), Vec3(1));
+        const gpu::FloatImage image = radiance(make_render_view(
+            {.fov_y = radians(60.0f), .near = 0.05f}, pose, pose, {.width = 65, .height = 65}));
+        for (int i = 0; i < 65; ++i) {
+            CAPTURE(i);
+            const double across = (i + 0.5 - 32.5) / 32.5 * std::tan(kTurn / 12);
+            const Vec3 got = roll == 0.0f ? rgb_at(image, i, 32) : rgb_at(image, 32, 64 - i);
+            CHECK(std::abs(got.x - hue(std::atan(across) / kTurn + 0.5)) < 0.06);
+            CHECK(got.y == test::near(0.3).epsilon(0.01));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
     Surroundings, "panorama layer: layers blend by their opacity in the order of their entities"
                       * technique("engine.panorama")) {
     const Vec3 far = {0.8f, 0.2f, 0.4f};
