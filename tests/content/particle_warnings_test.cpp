@@ -441,4 +441,18 @@ TEST_CASE("no effect: each component beside an emitter, on either executor") {
         == Lines{R"(entity "fire": particle_collision has no effect beside a particle_wrap)"});
 }
 
+TEST_CASE("particle warnings: a trail without effect hides no fields that particles ignore") {
+    const auto warns_of_stretch = [](const char* executor) {
+        const Lines lines = warnings_of(fmt::format(
+            R"({{"entities": [{{"name": "fire", "particle_look": {{"stretch": 3}}, "trail": {{}},
+            "particle_emitter": {{"executor": "{}"}}}}]}})",
+            executor));
+        return std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+            return line.find("particle_look.stretch has no effect") != std::string::npos;
+        });
+    };
+    CHECK(warns_of_stretch("gpu"));
+    CHECK_FALSE(warns_of_stretch("cpu"));  // which draws a ribbon
+}
+
 }  // namespace limn::particle_warnings_test

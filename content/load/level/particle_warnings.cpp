@@ -278,9 +278,11 @@ bool is_not_on_pieces(const World& world, Entity entity) {
     return surface_kind_of(world, entity) != BirthSurface::Pieces;
 }
 
-/// Of the quads of an emitter alone: trails, beams and billboards read a look in other ways.
+/// Of the quads of an emitter alone: trails, beams and billboards read a look in other ways. GPU
+/// particles have no trails.
 bool shows_particles(const World& world, Entity entity) {
-    return world.has<ParticleEmitter>(entity) && !has_component(world, entity, "trail")
+    return world.has<ParticleEmitter>(entity)
+           && (!has_component(world, entity, "trail") || is_on_gpu(world, entity))
            && !has_component(world, entity, "beam") && !has_component(world, entity, "billboard");
 }
 bool is_no_streak(const World& world, Entity entity) {
