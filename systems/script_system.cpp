@@ -140,6 +140,11 @@ void run_action(World& world, const ScriptAction& action) {
             destroy_tree(world, action.entity);
         }
         break;
+    case EventAction::Remove:
+        if (world.alive(action.entity) && world.has(action.entity, action.value.info().id)) {
+            world.remove(action.entity, action.value.info().id);
+        }
+        break;
     }
 }
 

@@ -79,7 +79,11 @@ Result<Entity> copy_tree(World& world, Entity entity) {
     if (!world.alive(entity)) {
         return fail("copy: found a destroyed entity, expected a living one");
     }
-    const Entity root = spawn(world, make_prefab(world, entity)).front();
+    return spawn_tree(world, make_prefab(world, entity));
+}
+
+Entity spawn_tree(World& world, const Prefab& prefab) {
+    const Entity root = spawn(world, prefab).front();
     rename_copies(world, subtree_of(hierarchy(world), root));
     return root;
 }

@@ -8,6 +8,7 @@
 namespace limn {
 
 class World;
+struct Prefab;
 
 // Cut, copy and paste of entities with all their descendants (engine.cut-copy-paste). What was cut
 // or copied is a root until it is pasted. Each fails, and changes nothing, if an entity is
@@ -26,6 +27,9 @@ enum class KeptPlace : std::uint8_t {
 /// references among them are to the copies. Names of the copies are new: "lamp" becomes "lamp 2",
 /// except for nodes of glTF files. Returns the new root.
 [[nodiscard]] Result<Entity> copy_tree(World& world, Entity entity);
+
+/// Creates an instance with such names. Returns its root.
+Entity spawn_tree(World& world, const Prefab& prefab);
 
 /// Makes `root` the last child of `parent`. Fails also if it has a parent already, or if `parent`
 /// is `root` or one of its descendants.

@@ -28,6 +28,7 @@ enum class EventAction : std::uint8_t {
               ///< enumerations and bools stepped through
     Spawn,    ///< creates an instance of `prefab`
     Destroy,  ///< destroys `entity` and its descendants
+    Remove,   ///< removes the component of the type of `value`
 };
 
 /// One action of an event. Skipped if its entity no longer exists.
@@ -35,7 +36,7 @@ struct ScriptAction {
     EventAction action = EventAction::Set;
     bool is_resource = false;      ///< `value` is a resource, else a component of `entity`
     Entity entity;                 ///< for all actions but Spawn
-    AnyComponent value;            ///< for Set and Impulse
+    AnyComponent value;            ///< for Set and Impulse; for Remove, its type
     std::vector<FieldEdit> edits;  ///< the fields of `value` to apply
     Prefab prefab;                 ///< for Spawn
 };

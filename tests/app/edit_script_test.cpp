@@ -3,6 +3,7 @@
 #include "content/app/panels/edit_save.h"
 #include "content/app/panels/edit_script.h"
 #include "content/app/panels/inspector.h"
+#include "content/app/panels/subtree_edits.h"
 #include "content/load/files/atomic_file.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
@@ -61,6 +62,7 @@ struct EditedLevelFile {
         REQUIRE(write_file(path, text).ok());
         REQUIRE(write_file(folder.file("leaf.effect.json"), R"({"prefabs": {"leaf": {}}})").ok());
         stage = open(path);
+        script = EditScript(path);
     }
 
     static std::unique_ptr<Stage> open(const std::string& file) {
@@ -80,8 +82,8 @@ struct EditedLevelFile {
         return done.error().message;
     }
     [[nodiscard]] EditedLevel save(std::span<const Edit> edits) {
-        const Result<EditedLevel> saved =
-            edited_level(path, folder.file("out.level.json"), world(), edits);
+        const Result<EditedLevel> saved = edited_level(
+            path, folder.file("out.level.json"), world(), edits, stage->scene.fields.entities);
         REQUIRE_MESSAGE(saved.ok(), (saved ? std::string() : saved.error().message));
         return *saved;
     }
@@ -173,6 +175,20 @@ TEST_CASE(
         {"cut arm", "delete street", "set lamp.point_light.intensity = 4"},
         {"duplicate left", "delete left", "duplicate left 2", "delete left 2"},
         {"set flame.point_light.intensity = 3", "undo"},
+        {"remove row[1].spot_light"},
+        {"set row[1].spot_light.intensity = 4", "remove row[0].spot_light"},
+        {"set box.name.text = crate", "set crate.transform.scale = [2, 2, 2]"},
+        {"set box.name.text = crate", "undo"},
+        {"set box.name.text = crate", "delete crate"},
+        {"set post.name.text = pole", "cut pole", "paste other", "duplicate arm"},
+        {"set lamp.name.text = x", "set lamp 2.name.text = lamp", "set x.name.text = lamp 2"},
+        {"delete box", "set other.name.text = box"},
+        {"duplicate box", "set box 2.name.text = crate", "set box.name.text = box 2"},
+        {"cut inner"},
+        {"place lantern", "set lantern.point_light.intensity = 8", "cut lantern", "paste post"},
+        {"place torch", "place torch", "set torch 3.transform.position = [1, 1, 1]"},
+        {"place lantern", "undo", "place torch", "delete torch 2"},
+        {"cut box", "paste inner", "set inner.transform.position = [1, 2, 3]"},
     };
     for (const std::vector<const char*>& script : scripts) {
         EditedLevelFile level;
@@ -192,6 +208,106 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "edit script: edits of entities without a name are saved where they are"
+    * technique("engine.editor-inspector")) {
+    // The first two look the same in the file.
+    EditedLevelFile level(R"({"entities": [
+        {"transform": {"position": [0, 0, 1]}}, {"transform": {"position": [0, 0, 1]}},
+        {"name": "post", "children": [{"point_light": {}}, {"children": [{"name": "inner"}]}]},
+        {"name": "eye", "camera": {}}]})");
+    World& world = level.world();
+    const std::span<const Entity> spawned = level.stage->scene.fields.entities;
+    UndoStack undo;
+    const auto set = [&](Entity entity, AnyComponent after) {
+        Edit edit;
+        edit.entity = entity;
+        edit.before = AnyComponent::read(world, entity, after.info());
+        apply_edit_value(world, edit, after);
+        edit.after = std::move(after);
+        undo.record(edit);
+    };
+    const auto check = [&] {
+        const EditedLevel saved = level.save(undo.done());
+        CHECK_MESSAGE(
+            saved.left_out.empty(), (saved.left_out.empty() ? "" : saved.left_out.front()));
+        const std::string file = level.folder.file("out.level.json");
+        REQUIRE(write_file(file, saved.text).ok());
+        CHECK(describe(EditedLevelFile::open(file)->world) == describe(world));
+    };
+    REQUIRE(spawned.size() == 7);
+    set(spawned[1], AnyComponent::of(Transform{.position = {3, 3, 3}}));
+    set(spawned[3], AnyComponent::of(PointLight{.intensity = 7}));
+    check();
+    set(spawned[4], AnyComponent::of(Name{"middle"}));
+    set(spawned[5], AnyComponent::of(Transform{.position = {1, 1, 1}}));
+    check();
+    SubtreeEditor subtrees;
+    REQUIRE(subtrees.remove(world, undo, spawned[0]).ok());
+    REQUIRE(subtrees.cut(world, undo, spawned[3]).ok());
+    check();
+}
+
+TEST_CASE(
+    "edit script: a new name is that in events, shows and fields, too"
+    * technique("engine.editor-inspector")) {
+    EditedLevelFile level(R"({
+        "prefabs": {"watcher": {"orbit_camera": {"target": "box"}},
+                    "lantern": {"children": [{"name": "flame"}]}},
+        "entities": [
+            {"name": "box"}, {"name": "flame"}, {"name": "watcher", "prefab": "watcher"},
+            {"name": "row", "repeat": {"count": [2, 1, 1]}, "spot_light": {}},
+            {"name": "eye", "camera": {}, "orbit_camera": {"target": "box"}}],
+        "events": [{"at": 0, "set": {"box": {"transform": {"scale": [2, 2, 2]}},
+                                     "row[1]": {"spot_light": {"intensity": 4}}}},
+                   {"at": 5, "destroy": ["box"]}],
+        "shows": [{"technique": "light.spot", "camera": "eye", "text": "light on a crate",
+                   "set": {"entities": {"box": {"orbit_camera": {"target": "eye"}}}}}]})");
+    level.run("set box.name.text = crate");
+    level.run("set eye.name.text = view");
+    level.run("set flame.name.text = fire");  // a lantern has one as well
+    const EditedLevel saved = level.save();
+    REQUIRE(saved.left_out.size() == 1);
+    CHECK(saved.left_out[0].find("prefabs have entities of that name") != std::string::npos);
+    CHECK(saved.text.find("\"box\"") == std::string::npos);
+    CHECK(saved.text.find("\"eye\"") == std::string::npos);
+    const std::string file = level.folder.file("out.level.json");
+    REQUIRE(write_file(file, saved.text).ok());
+    const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);
+    step_stage(*reopened);
+    step_stage(*level.stage);
+    level.run("set fire.name.text = flame");
+    CHECK(describe(reopened->world) == describe(level.world()));
+}
+
+TEST_CASE(
+    "edit script: what is placed equals an instance in the level's file"
+    * technique("engine.editor-inspector")) {
+    const std::string level_text = R"({
+        "include": ["leaf.effect.json"],
+        "materials": {"red": {}}, "meshes": {"box": {"make": "box"}, "ball": {"make": "sphere"}},
+        "prefabs": {"pair": {
+            "mesh_instance": {"mesh": "ball", "material": "red"},
+            "orbit_camera": {"target": "second"},
+            "children": [{"name": "second", "mesh_instance": {"mesh": "box"}},
+                         {"name": "far", "orbit_camera": {"target": "eye"}}]}},
+        "entities": [{"name": "eye", "camera": {}})";
+    EditedLevelFile level(level_text + "]}");
+    EditedLevelFile other(
+        level_text
+        + R"(, {"name": "pair", "prefab": "pair"}, {"name": "leaf", "prefab": "leaf"}]})");
+    level.run("place pair");
+    level.run("place leaf");
+    step_stage(*level.stage);  // orbits, as when a level is opened
+    CHECK(describe(level.world()) == describe(other.world()));
+    for (int i = 0; i < 2; ++i) {
+        level.run("undo");
+    }
+    CHECK(find(level.world(), "second").is_null());
+    level.script = EditScript();
+    CHECK(level.error("place pair").find("expected one with prefabs") != std::string::npos);
+}
+
 TEST_CASE("edit script: what is deleted and referred to is destroyed at the start") {
     EditedLevelFile level(R"({"entities": [
         {"name": "box", "children": [{"name": "lid"}]},
@@ -207,7 +323,8 @@ TEST_CASE("edit script: where an edit cannot be saved, all others are, and it is
         {"cut spark", "the move of \"spark\""},
         {"delete spark", "the deletion of \"spark\""},
         {"set flame.transform.position = [1, 1, 1]", ""},
-        {"cut inner", "the move of \"inner\""}};
+        {"set spark.name.text = ember", "the new name of \"spark\""},
+        {"set row[0].name.text = gap", "the new name of \"row[0]\""}};
     for (const auto& [line, left_out] : lines) {
         CAPTURE(line);
         EditedLevelFile level;
@@ -327,7 +444,10 @@ TEST_CASE("edit script: what cannot be done is one line, and changes nothing") {
     CHECK(level.error("add lamp").find("expected NAME.COMPONENT") != std::string::npos);
     CHECK(level.error("set lamp.parent.entity = lamp").find("cut and paste") != std::string::npos);
     CHECK(level.error("remove lamp.parent").find("cut and paste") != std::string::npos);
-    CHECK(level.error("set lamp.name.text = sun").find("rename it") != std::string::npos);
+    CHECK(level.error("set lamp.name.text = box").find("a second \"box\"") != std::string::npos);
+    CHECK(level.error("set lamp.name.text = a.b").find("without . [ ]") != std::string::npos);
+    CHECK(level.error("set lamp.name.text = \"\"").find("found the name") != std::string::npos);
+    CHECK(level.error("place lanter").find("did you mean lantern?") != std::string::npos);
     CHECK(level.error("redo").find("nothing to redo") != std::string::npos);
     level.run("copy street");
     CHECK_FALSE(level.error("set street.transform.scale = [0, 0, 0]").empty());
@@ -368,8 +488,9 @@ TEST_CASE("edit save: a level with files stays in its folder; a model is no leve
         R"({"include": ["leaf.effect.json"], "entities": [{"name": "a", "prefab": "leaf"}]})");
     level.run("set exposure.ev = 2");
     const auto save = [&](const std::string& path, const std::string& out) {
-        const Result<EditedLevel> saved =
-            edited_level(path, out, level.world(), level.script.undo_stack().done());
+        const Result<EditedLevel> saved = edited_level(
+            path, out, level.world(), level.script.undo_stack().done(),
+            level.stage->scene.fields.entities);
         return saved ? saved->text : saved.error().message;
     };
     CHECK(
@@ -383,8 +504,12 @@ TEST_CASE("edit save: a level with files stays in its folder; a model is no leve
 }
 
 TEST_CASE("edit save: what a level cannot say is named") {
-    EditedLevelFile level;
+    std::string text = kStreet;
+    const std::string row = R"("name": "row", )";
+    text.insert(text.find(row) + row.size(), R"("children": [{"transform": {}}], )");
+    EditedLevelFile level(text);
     World& world = level.world();
+    Entity part;
     // Copies by repeat are no entities of the file.
     Edit edit;
     edit.entity = find(world, "row[0]");
@@ -403,11 +528,6 @@ TEST_CASE("edit save: what a level cannot say is named") {
     material.after = AnyComponent::of(rough);
     apply_edit_value(world, material, material.after);
     undo.record(material);
-    Edit removal;
-    removal.entity = find(world, "row[1]");
-    removal.before = AnyComponent::read(world, removal.entity, component_info<SpotLight>());
-    apply_edit_value(world, removal, {});
-    undo.record(removal);
     const auto set = [&](Entity entity, AnyComponent after) {
         Edit change;
         change.entity = entity;
@@ -416,17 +536,22 @@ TEST_CASE("edit save: what a level cannot say is named") {
         change.after = std::move(after);
         undo.record(change);
     };
-    set(parent_of(world, find(world, "inner")), AnyComponent::of(Transform{.position = {3, 3, 3}}));
-    set(find(world, "box"), AnyComponent::of(Name{"crate"}));
+    set(find(world, "box"), AnyComponent::of(Name{"lamp"}));  // a second one
+    world.query<const Parent>().each([&](Entity entity, const Parent& parent) {
+        const Name* const above = world.find<Name>(parent.entity);
+        if (above != nullptr && above->text == "row[0]") {
+            part = entity;
+        }
+    });
+    set(part, AnyComponent::of(Transform{.position = {3, 3, 3}}));
     const EditedLevel saved = level.save(undo.done());
     std::string all;
     for (const std::string& what : saved.left_out) {
         all += what + '\n';
     }
-    CHECK(all.find("removed from \"row[1]\"") != std::string::npos);
     CHECK(all.find("the move of \"row[0]\"") != std::string::npos);
     CHECK(all.find("the material \"of a file\"") != std::string::npos);
-    CHECK(all.find("edits of entities without a name") != std::string::npos);
+    CHECK(all.find("edits of children of copies") != std::string::npos);
     CHECK(all.find("the new name of \"box\"") != std::string::npos);
 }
 

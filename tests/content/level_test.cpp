@@ -234,9 +234,13 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
              "impulse": {"lamp": {"transform": {"position": [0, -1, 0]}, "point_light": {"intensity": -3}}},
              "spawn": [{"prefab": "stone"}], "destroy": ["target"],
              "impulse_resources": {"exposure": {"curve": -1}}},
-            {"at": 1, "every": 1, "set": {"lamp": {"orbit_camera": {"target": "lamp"}}}}]})");
+            {"at": 1, "every": 1, "set": {"lamp": {"orbit_camera": {"target": "lamp"}}}},
+            {"at": 2, "set": {"lamp": {"point_light": null, "spin": {}}}}]})");
     const EventList& list = world.resource<EventList>();
-    REQUIRE(list.events.size() == 2);
+    REQUIRE(list.events.size() == 3);
+    CHECK(list.events[2].actions.at(0).action == EventAction::Remove);
+    CHECK(&list.events[2].actions[0].value.info() == &component_info<PointLight>());
+    CHECK(list.events[2].actions.at(1).action == EventAction::Set);
     const ScriptEvent& event = list.events[0];
     CHECK(event.time == 0.5);
     CHECK(event.times == 4);

@@ -105,6 +105,27 @@ TEST_CASE("script: a repeated event keeps its interval and ends after its count"
     CHECK_FALSE(is_due(event, 6, kStep));
 }
 
+TEST_CASE("script: what removes a component does so once, and leaves other entities alone") {
+    World world;
+    const Entity lamp = world.create(PointLight{});
+    const Entity other = world.create(PointLight{});
+    const Entity gone = world.create(PointLight{});
+    const auto remove = [](Entity entity) {
+        ScriptAction action;
+        action.action = EventAction::Remove;
+        action.entity = entity;
+        action.value = AnyComponent::of(PointLight{});
+        return action;
+    };
+    world.insert_resource(EventList{
+        {event_at(0, remove(lamp)), event_at(0, remove(gone)), event_at(0, remove(lamp))}});
+    world.insert_resource(FrameTime{.step = kStep});
+    world.destroy(gone);
+    run_events(world);
+    CHECK_FALSE(world.has<PointLight>(lamp));
+    CHECK(world.has<PointLight>(other));
+}
+
 TEST_CASE("script: set changes the named fields and no others") {
     World world;
     const Entity lamp = world.create(PointLight{.intensity = 3, .radius = 7});

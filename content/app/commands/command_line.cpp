@@ -279,7 +279,7 @@ Command add_edit(CLI::App& program, EditOptions& options) {
                 "  set PATH = VALUE   as --set of `limn render`\n"
                 "  add NAME.COMPONENT, remove NAME.COMPONENT\n"
                 "  cut NAME, copy NAME, paste [PARENT], duplicate NAME, delete NAME\n"
-                "  undo, redo\n"
+                "  place PREFAB, undo, redo\n"
                 "where NAME and PARENT are entities. Whole entities take their children with them; "
                 "cut and\n"
                 "paste keep the world transform. An edit that fails ends the command, and nothing "
@@ -290,6 +290,7 @@ Command add_edit(CLI::App& program, EditOptions& options) {
                 "Examples:\n"
                 "  limn edit pond \"set sun.transform.rotation = [215, -20, 0]\"\n"
                 "  limn edit pond \"duplicate pool\" \"delete pool\" undo -o my.level.json\n"
+                "  limn edit den \"place fox\" \"set fox.name.text = vixen\" -o my.level.json\n"
                 "  limn edit pond --script arrange.txt -o my.level.json");
     return {app, [&options] { return run_edit(options); }};
 }

@@ -50,7 +50,7 @@ Status run_edit(const EditOptions& options) {
         return fail("limn edit: found no edits, expected some, or --script");
     }
     const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(options.scene));
-    EditScript script;
+    EditScript script(stage->scene.path);
     for (const EditLine& line : lines) {
         const Result<std::string> done = script.run(stage->world, line.text);
         if (!done) {
@@ -64,8 +64,9 @@ Status run_edit(const EditOptions& options) {
         fmt::print("{}\n", edits_as_json(stage->world, script.undo_stack().done()));
         return Done{};
     }
-    const EditedLevel level = LIMN_TRY(
-        edited_level(stage->scene.path, options.out, stage->world, script.undo_stack().done()));
+    const EditedLevel level = LIMN_TRY(edited_level(
+        stage->scene.path, options.out, stage->world, script.undo_stack().done(),
+        stage->scene.fields.entities));
     for (const std::string& what : level.left_out) {
         log_warn("{}: saved without {}", options.out, what);
     }

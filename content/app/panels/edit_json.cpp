@@ -268,7 +268,7 @@ JsonValue* patched(
     if (owner == entity) {
         return is_copy(name) ? &member(edits.copies, name.text) : &changes_of(edits, entity);
     }
-    if (before.name(owner).empty() || world.has<FromGltf>(owner)) {
+    if (name.text.empty() || before.name(owner).empty() || world.has<FromGltf>(owner)) {
         return &changes_of(edits, entity);
     }
     return is_copy(name) ? nullptr : &member(member(changes_of(edits, owner), "nodes"), name.text);
@@ -358,7 +358,8 @@ std::string edit_note(const World& world, Entity entity) {
     const Name* const name = name_of(world, copy);
     if (name == nullptr) {
         return name_of(world, entity) == nullptr
-                   ? "has no name: its edits cannot be copied; name it in its file"
+                   ? "has no name: its edits cannot be copied, and are saved only if the level's "
+                     "file lists it"
                    : "";
     }
     const std::string_view repeated = repeated_name(*name);
@@ -419,6 +420,28 @@ std::string BeforeEdits::name(Entity entity) const {
 Entity BeforeEdits::parent(Entity entity) const {
     const auto found = parents_.find(entity);
     return found != parents_.end() ? found->second : parent_of(world_, entity);
+}
+
+std::vector<Entity>
+renamed_entities(const World& world, std::span<const Edit> edits, const BeforeEdits& before) {
+    std::unordered_set<Entity> made;
+    std::vector<Entity> renamed;
+    for (const Edit& edit : edits) {
+        if (edit.tree && edit.tree->made) {
+            made.insert(edit.tree->entities.begin(), edit.tree->entities.end());
+        }
+        const bool is_name = !edit.tree && edit.part == LevelPart::Component
+                             && &edited_info(edit) == &component_info<Name>();
+        if (!is_name || !exists(world, edit.entity) || made.contains(edit.entity)
+            || std::ranges::find(renamed, edit.entity) != renamed.end()) {
+            continue;
+        }
+        const Name* const now = name_of(world, edit.entity);
+        if ((now != nullptr ? now->text : std::string()) != before.name(edit.entity)) {
+            renamed.push_back(edit.entity);
+        }
+    }
+    return renamed;
 }
 
 TreeEdits tree_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before) {
@@ -492,14 +515,8 @@ LevelEdits level_edits(const World& world, std::span<const Edit> edits, const Be
             continue;
         }
         const ComponentInfo& info = edited_info(edit);
-        if (is_component && info.id == component_id<Parent>) {
-            continue;
-        }
-        if (is_component && info.id == component_id<Name>) {
-            leave_out(
-                "the new name of " + in_quotes(before.name(edit.entity))
-                + ": rename it in the file");
-            continue;
+        if (is_component && (info.id == component_id<Parent> || info.id == component_id<Name>)) {
+            continue;  // TreeEdits, and new_names()
         }
         const AnyComponent& first = first_edit_of(edits, edit).before;
         const JsonValue old =
@@ -510,20 +527,11 @@ LevelEdits level_edits(const World& world, std::span<const Edit> edits, const Be
         switch (edit.part) {
         case LevelPart::Component: {
             const Name name{before.name(edit.entity)};
-            if (name.text.empty()) {
-                leave_out("edits of entities without a name: name them in the file");
-                break;
-            }
             JsonValue value;
             if (world.has(edit.entity, info.id)) {
                 value = edited(AnyComponent::read(world, edit.entity, info).data());
             } else if (first.is_empty()) {
                 break;  // added and removed again
-            } else if (is_copy(name)) {
-                leave_out(
-                    info.name + " removed from " + in_quotes(name.text)
-                    + ": an event can only set fields of a copy");
-                break;
             }
             if (JsonValue* const target = patched(world, all, edit.entity, name, before)) {
                 set_member(*target, info.name, std::move(value));
@@ -564,10 +572,19 @@ std::string edits_as_json(World& world, std::span<const Edit> edits) {
     const TreeEdits trees = tree_edits(world, edits, before);
     JsonValue entities = json_array();
     for (LevelEdits::Change& change : all.entities) {
-        JsonValue& entity = named(entities, before.name(change.entity));
+        const std::string name = before.name(change.entity);
+        if (name.empty()) {
+            all.left_out.emplace_back("edits of entities without a name: name them in the file");
+            continue;
+        }
+        JsonValue& entity = named(entities, name);
         for (JsonMember& m : change.components.members) {
             set_member(entity, m.key, std::move(m.value));
         }
+    }
+    for (const Entity entity : renamed_entities(world, edits, before)) {
+        all.left_out.push_back(
+            "the new name of " + in_quotes(before.name(entity)) + ": rename it in the file");
     }
     const std::string comments = add_made(world, trees, before, entities);
     JsonValue destroyed = destroyed_names(trees, before, all.left_out);

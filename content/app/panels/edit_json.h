@@ -36,12 +36,18 @@ class BeforeEdits {
     BeforeEdits(const World& world, std::span<const Edit> edits);
     [[nodiscard]] std::string name(Entity entity) const;  ///< "" without one
     [[nodiscard]] Entity parent(Entity entity) const;
+    /// For an entity whose new name is saved.
+    void take_new_name(Entity entity) { names_.erase(entity); }
 
   private:
     const World& world_;
     std::unordered_map<Entity, std::string> names_;
     std::unordered_map<Entity, Entity> parents_;
 };
+
+/// Living entities of the level that have another name than before.
+[[nodiscard]] std::vector<Entity>
+renamed_entities(const World& world, std::span<const Edit> edits, const BeforeEdits& before);
 
 /// Entities that the edits made, deleted or moved, and that are still so.
 struct TreeEdits {

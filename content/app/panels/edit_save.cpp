@@ -5,8 +5,10 @@
 #include "content/load/level/level_include.h"
 #include "content/load/level/level_load.h"
 #include "content/load/level/level_patch.h"
+#include "content/load/level/level_rename.h"
 #include "ecs/base/text.h"
 #include "ecs/components/gltf_source.h"
+#include "ecs/components/name.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
@@ -52,6 +55,43 @@ JsonValue take_member(JsonValue& object, std::string_view key) {
     return taken;
 }
 
+/// Indices of the entities of a file, in the order of the file, parents before their children; by
+/// the entities that they became. Those that are several, by `repeat`, are left out.
+using FilePlaces = std::unordered_map<Entity, int>;
+
+void add_positions(const JsonValue& entities, std::vector<SourcePosition>& positions) {
+    for (const JsonValue& entity : entities.items) {
+        positions.push_back(entity.at);
+        add_positions(entity["children"], positions);
+    }
+}
+
+/// Empty if the world was loaded from another text than `level`.
+Result<FilePlaces>
+find_places(JsonValue level, const std::string& path, std::span<const Entity> spawned) {
+    const SourceFiles included = LIMN_TRY(include_files(level, path, {}));
+    const std::string text = write_json(level);
+    const Level parsed = LIMN_TRY(parse_level(text, path));
+    std::vector<SourcePosition> positions;
+    add_positions((LIMN_TRY(parse_json(text, path)))["entities"], positions);
+    FilePlaces places;
+    if (parsed.entity_positions.size() != spawned.size()) {
+        return places;
+    }
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Entity>> at;
+    for (std::size_t i = 0; i < spawned.size(); ++i) {
+        at[{parsed.entity_positions[i].line, parsed.entity_positions[i].column}].push_back(
+            spawned[i]);
+    }
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const std::vector<Entity>& all = at[{positions[i].line, positions[i].column}];
+        if (all.size() == 1) {
+            places[all.front()] = static_cast<int>(i);
+        }
+    }
+    return places;
+}
+
 /// An entity of the level's file, without its children.
 struct FileEntity {
     JsonValue json;
@@ -66,8 +106,8 @@ class FileEntities {
   public:
     FileEntities(
         JsonValue entities, World& world, const BeforeEdits& before, const TreeEdits& trees,
-        EditedLevel& saved)
-        : world_(world), before_(before), saved_(saved) {
+        const FilePlaces& places, EditedLevel& saved)
+        : world_(world), before_(before), places_(places), saved_(saved) {
         flatten(std::move(entities), -1);
         listed_ = list_.size();
         for (const Entity entity : trees.made) {
@@ -160,10 +200,14 @@ class FileEntities {
         }
     }
 
-    /// The entity as it was before the edits, by its name and its parents; -1 if it is not listed.
+    /// The entity as it was before the edits; -1 if it is not listed. In a world that was loaded
+    /// with a show, by its name and its parents.
     [[nodiscard]] int find(Entity entity) const {
         if (const auto made = made_.find(entity); made != made_.end()) {
             return made->second;
+        }
+        if (const auto place = places_.find(entity); place != places_.end()) {
+            return place->second;
         }
         const std::string name = before_.name(entity);
         const Entity parent = before_.parent(entity);
@@ -233,6 +277,9 @@ class FileEntities {
 
     /// Whether a name in the level, other than those of entities, is this one.
     static bool refers_to(const JsonValue& json, const FileEntity& entity) {
+        if (entity.name.empty()) {
+            return false;
+        }
         if (json.kind == JsonKind::String) {
             return json.text == entity.name;
         }
@@ -270,6 +317,7 @@ class FileEntities {
 
     World& world_;
     const BeforeEdits& before_;
+    const FilePlaces& places_;
     EditedLevel& saved_;
     std::vector<FileEntity> list_;
     std::vector<int> parents_;  // of each, before moves
@@ -311,10 +359,120 @@ Status expect_same_folder(
     return Done{};
 }
 
+/// Saves all edits of a level, except for the names of some entities.
+class LevelWriter {
+  public:
+    LevelWriter(
+        JsonValue level, FilePlaces places, const std::string& path, const std::string& out,
+        World& world, std::span<const Edit> edits)
+        : level_(std::move(level)), places_(std::move(places)), path_(path), out_(out),
+          world_(world), edits_(edits) {}
+
+    /// Fails if the file would be no level.
+    [[nodiscard]] Result<EditedLevel> write(std::span<const Entity> renamed) {
+        JsonValue level = level_;
+        EditedLevel saved;
+        BeforeEdits before(world_, edits_);
+        name(level, renamed, before);
+        const JsonLocation location{path_, ""};
+        LevelEdits all = level_edits(world_, edits_, before);
+        saved.left_out = std::move(all.left_out);
+
+        JsonValue listed = json_array();
+        std::swap(listed.items, array_member(level, "entities").items);
+        FileEntities entities(
+            std::move(listed), world_, before, tree_edits(world_, edits_, before), places_, saved);
+        for (LevelEdits::Change& change : all.entities) {
+            LIMN_TRY(entities.change(std::move(change), location));
+        }
+        LIMN_TRY(patch(level, std::move(all.patch), location, saved));
+
+        JsonValue destroyed = json_array();
+        array_member(level, "entities").items = entities.build(level, destroyed).items;
+        JsonValue event = json_object({{"at", {}, json_of(0.0)}});
+        if (!all.copies.members.empty()) {
+            event.members.push_back({"set", {}, std::move(all.copies)});
+        }
+        if (!destroyed.items.empty()) {
+            event.members.push_back({"destroy", {}, std::move(destroyed)});
+        }
+        if (event.members.size() > 1) {
+            array_member(level, "events").items.push_back(std::move(event));
+        }
+        saved.text = write_json(level) + '\n';
+        LIMN_TRY(include_files(level, path_, {}));
+        const Result<Level> parsed = parse_level(write_json(level), out_);
+        if (!parsed) {
+            return fail("the edited level would be no level: {}", parsed.error().message);
+        }
+        return saved;
+    }
+
+  private:
+    /// Renames entities of the file, and those that have no name yet.
+    void name(JsonValue& level, std::span<const Entity> renamed, BeforeEdits& before) const {
+        EntityNames names;
+        std::unordered_map<int, std::string> first;
+        for (const Entity entity : renamed) {
+            const auto* const now = world_.find<Name>(entity);
+            const std::string text = now != nullptr ? now->text : "";
+            if (const std::string old = before.name(entity); !old.empty()) {
+                names[old] = text;
+            } else {
+                first[places_.at(entity)] = text;
+            }
+            before.take_new_name(entity);
+        }
+        rename_entities(level, names);
+        int index = 0;
+        add_names(array_member(level, "entities"), first, index);
+    }
+
+    static void
+    add_names(JsonValue& entities, const std::unordered_map<int, std::string>& names, int& index) {
+        for (JsonValue& entity : entities.items) {
+            if (const auto found = names.find(index++); found != names.end()) {
+                JsonMember named{"name", {}, json_of(std::string_view(found->second))};
+                entity.members.insert(entity.members.begin(), std::move(named));
+            }
+            if (entity.find("children") != nullptr) {
+                add_names(array_member(entity, "children"), names, index);
+            }
+        }
+    }
+
+    Status patch(
+        JsonValue& level, JsonValue changes, const JsonLocation& location,
+        EditedLevel& saved) const {
+        JsonValue materials = take_member(changes, "materials");
+        std::erase_if(materials.members, [&](const JsonMember& material) {
+            const bool is_foreign = level["materials"].find(material.key) == nullptr;
+            if (is_foreign) {
+                saved.left_out.push_back(
+                    "edits of the material " + in_quotes(material.key)
+                    + ": the level's file does not define it");
+            }
+            return is_foreign;
+        });
+        if (!materials.members.empty()) {
+            changes.members.push_back({"materials", {}, std::move(materials)});
+        }
+        return patch_level(level, changes, location);
+    }
+
+    JsonValue level_;
+    FilePlaces places_;
+    const std::string& path_;
+    const std::string& out_;
+    World& world_;
+    std::span<const Edit> edits_;
+};
+
 }  // namespace
 
 Result<EditedLevel> edited_level(
-    const std::string& path, const std::string& out, World& world, std::span<const Edit> edits) {
+    const std::string& path, const std::string& out, World& world, std::span<const Edit> edits,
+    std::span<const Entity> spawned) {
     if (!path.ends_with(kEnding)) {
         return fail("{}: found a model, expected a level: edits are saved as a level", path);
     }
@@ -327,51 +485,41 @@ Result<EditedLevel> edited_level(
     }
     JsonValue level = LIMN_TRY(load_json(path));
     LIMN_TRY(expect_same_folder(level, path, out));
-    const JsonLocation location{path, ""};
+    FilePlaces places = LIMN_TRY(find_places(level, path, spawned));
     const BeforeEdits before(world, edits);
-    LevelEdits all = level_edits(world, edits, before);
-    EditedLevel saved;
-    saved.left_out = std::move(all.left_out);
-
-    JsonValue listed = json_array();
-    std::swap(listed.items, array_member(level, "entities").items);
-    FileEntities entities(
-        std::move(listed), world, before, tree_edits(world, edits, before), saved);
-    for (LevelEdits::Change& change : all.entities) {
-        LIMN_TRY(entities.change(std::move(change), location));
-    }
-    JsonValue materials = take_member(all.patch, "materials");
-    std::erase_if(materials.members, [&](const JsonMember& material) {
-        const bool is_foreign = level["materials"].find(material.key) == nullptr;
-        if (is_foreign) {
-            saved.left_out.push_back(
-                "edits of the material " + in_quotes(material.key)
-                + ": the level's file does not define it");
+    std::vector<Entity> renamed = renamed_entities(world, edits, before);
+    std::vector<std::string> left_out;
+    const auto leave_out = [&](Entity entity, const std::string& why) {
+        const std::string old = before.name(entity);
+        left_out.push_back(
+            "the new name of " + (old.empty() ? "an entity without a name" : in_quotes(old)) + ": "
+            + why);
+    };
+    std::erase_if(renamed, [&](Entity entity) {
+        const bool is_listed = places.contains(entity);
+        const bool is_clear = !is_prefab_name(level, before.name(entity));
+        if (!is_listed || !is_clear) {
+            leave_out(
+                entity, is_listed ? "prefabs have entities of that name, too"
+                                  : "the level's file does not list it");
         }
-        return is_foreign;
+        return !is_listed || !is_clear;
     });
-    if (!materials.members.empty()) {
-        all.patch.members.push_back({"materials", {}, std::move(materials)});
+    LevelWriter writer(std::move(level), std::move(places), path, out, world, edits);
+    Result<EditedLevel> saved = writer.write(renamed);
+    if (!saved && !renamed.empty()) {  // those names that the level can have
+        std::vector<Entity> valid;
+        for (const Entity entity : renamed) {
+            valid.push_back(entity);
+            if (const Result<EditedLevel> tried = writer.write(valid); !tried) {
+                leave_out(entity, tried.error().message);
+                valid.pop_back();
+            }
+        }
+        saved = writer.write(valid);
     }
-    LIMN_TRY(patch_level(level, all.patch, location));
-
-    JsonValue destroyed = json_array();
-    array_member(level, "entities").items = entities.build(level, destroyed).items;
-    JsonValue event = json_object({{"at", {}, json_of(0.0)}});
-    if (!all.copies.members.empty()) {
-        event.members.push_back({"set", {}, std::move(all.copies)});
-    }
-    if (!destroyed.items.empty()) {
-        event.members.push_back({"destroy", {}, std::move(destroyed)});
-    }
-    if (event.members.size() > 1) {
-        array_member(level, "events").items.push_back(std::move(event));
-    }
-    saved.text = write_json(level) + '\n';
-    LIMN_TRY(include_files(level, path, {}));
-    const Result<Level> parsed = parse_level(write_json(level), out);
-    if (!parsed) {
-        return fail("the edited level would be no level: {}", parsed.error().message);
+    if (saved) {
+        saved->left_out.insert(saved->left_out.begin(), left_out.begin(), left_out.end());
     }
     return saved;
 }

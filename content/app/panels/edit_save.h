@@ -2,6 +2,7 @@
 
 #include "content/app/panels/undo.h"
 #include "ecs/base/result.h"
+#include "ecs/entity.h"
 
 #include <span>
 #include <string>
@@ -20,10 +21,12 @@ struct EditedLevel {
 };
 
 /// The level of the file `path`, with the edits of the world that was loaded from it, as the text
-/// of the file `out`. Fails if the file cannot be read, if what it would be is no level, or if it
-/// refers to files and `out` is in another folder.
+/// of the file `out`. `spawned`: its entities in the level's order (LevelFields); without a name,
+/// they are found by it. Fails if the file cannot be read, if what it would be is no level, or if
+/// it refers to files and `out` is in another folder.
 [[nodiscard]] Result<EditedLevel> edited_level(
-    const std::string& path, const std::string& out, World& world, std::span<const Edit> edits);
+    const std::string& path, const std::string& out, World& world, std::span<const Edit> edits,
+    std::span<const Entity> spawned);
 
 /// A file that does not exist yet: "museum-edited.level.json" beside "museum.level.json", or else
 /// "museum-edited-2.level.json" ...

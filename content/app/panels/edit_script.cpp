@@ -2,6 +2,7 @@
 
 #include "content/app/panels/field_widgets.h"
 #include "content/load/files/json_document.h"
+#include "content/load/level/level_place.h"
 #include "content/load/level/set_value.h"
 #include "ecs/any_component.h"
 #include "ecs/base/text.h"
@@ -23,8 +24,8 @@
 namespace limn {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"set",   "add",       "remove", "cut",  "copy",
-                                       "paste", "duplicate", "delete", "undo", "redo"};
+constexpr std::string_view kVerbs[] = {"set",   "add",       "remove", "cut",  "copy", "paste",
+                                       "place", "duplicate", "delete", "undo", "redo"};
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t\r");
@@ -56,10 +57,19 @@ Status expect_own_fields(const ComponentInfo& info) {
     if (info.id == component_id<Parent>) {
         return fail("found the component parent, expected cut and paste");
     }
-    if (info.id == component_id<Name>) {
-        return fail("found the component name, which others refer to: rename it in the file");
-    }
     return Done{};
+}
+
+/// A name that another entity of the level can have.
+Status expect_new_name(const World& world, std::string_view name) {
+    if (name.empty() || name.find_first_of(".[]") != std::string_view::npos) {
+        return fail("found the name {}, expected one without . [ ]", in_quotes(name));
+    }
+    bool is_used = false;
+    world.query<const Name>().each(
+        [&](Entity, const Name& other) { is_used = is_used || other.text == name; });
+    return is_used ? Status(fail("found a second {}, expected a new name", in_quotes(name)))
+                   : Status(Done{});
 }
 
 /// What a set changes: the component of each entity, or one resource or material.
@@ -99,6 +109,13 @@ Result<std::string> set_field_of(World& world, UndoStack& undo, std::string_view
     const std::string_view path = trimmed(rest.substr(0, equals));
     const SetTarget target = LIMN_TRY(find_set_target(world, path));
     LIMN_TRY(expect_own_fields(*target.info));
+    if (target.info->id == component_id<Name>) {
+        std::string_view name = trimmed(rest.substr(equals + 1));
+        if (name.size() > 1 && name.front() == '"' && name.back() == '"') {
+            name = name.substr(1, name.size() - 2);
+        }
+        LIMN_TRY(expect_new_name(world, name));
+    }
     std::vector<Edit> edits = read_targets(world, target);
     LIMN_TRY(set_value(world, path, trimmed(rest.substr(equals + 1))));
     std::vector<Edit> after = read_targets(world, target);
@@ -174,6 +191,14 @@ Result<std::string> EditScript::run(World& world, std::string_view line) {
     if (verb == "paste") {
         const Entity parent = rest.empty() ? Entity{} : LIMN_TRY(find_one(world, rest));
         return subtrees_.paste(world, undo_, parent);
+    }
+    if (verb == "place") {
+        if (level_.empty()) {
+            return fail("found no level, expected one with prefabs");
+        }
+        const std::string prefab(rest);
+        return subtrees_.place(
+            world, undo_, LIMN_TRY(read_instance(world, level_, prefab, prefab)), Vec3(0));
     }
     if (verb != "cut" && verb != "copy" && verb != "duplicate" && verb != "delete") {
         return fail(

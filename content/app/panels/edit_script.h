@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace limn {
 
@@ -20,6 +21,7 @@ class World;
 ///     cut lamp                             makes it a root, which the next paste moves
 ///     copy lamp
 ///     paste post                           below it; without a name as a root
+///     place lantern                        an instance of a prefab of the level
 ///     duplicate lamp                       a copy beside it
 ///     delete lamp                          with its children
 ///     undo, redo                           the last edit
@@ -27,12 +29,17 @@ class World;
 /// Blank lines and those that begin with # do nothing.
 class EditScript {
   public:
+    EditScript() = default;
+    /// With the file of the level, whose prefabs can be placed.
+    explicit EditScript(std::string level) : level_(std::move(level)) {}
+
     /// Runs one line. Returns what it did, "lamp: point_light.intensity", or fails and changes
     /// nothing.
     [[nodiscard]] Result<std::string> run(World& world, std::string_view line);
     [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
 
   private:
+    std::string level_;
     UndoStack undo_;
     SubtreeEditor subtrees_;
 };

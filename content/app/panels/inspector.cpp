@@ -6,6 +6,7 @@
 #include "content/app/panels/graph_controls.h"
 #include "content/app/panels/hud_style.h"
 #include "content/load/level/level_hints.h"
+#include "content/load/level/level_place.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
@@ -79,7 +80,9 @@ bool is_editable(const ComponentInfo& info) {
 
 }  // namespace
 
-void Inspector::reset() {
+void Inspector::reset(const std::string& level) {
+    level_ = level;
+    placed_.clear();
     undo_.clear();
     note_saved();
     subtrees_.reset();
@@ -134,6 +137,18 @@ std::string Inspector::run(World& world, TreeCommand command) {
     } else if (command != TreeCommand::Cut && command != TreeCommand::Copy) {
         select(subtrees_.pasted());
     }
+    return *done;
+}
+
+std::string Inspector::place(World& world, const std::string& prefab, const Vec3& position) {
+    const Result<Prefab> instance = read_instance(world, level_, prefab, prefab);
+    const Result<std::string> done = instance ? subtrees_.place(world, undo_, *instance, position)
+                                              : Result<std::string>(instance.error());
+    if (!done) {
+        return done.error().message;
+    }
+    rows_built_at_ = -1.0;
+    select(subtrees_.pasted());
     return *done;
 }
 
@@ -203,11 +218,13 @@ void Inspector::draw_edits(World& world) {
 
 void Inspector::draw_entities(const HudStyle& style, World& world) {
     const bool was_empty = search_.empty();
-    ImGui::SetNextItemWidth(-1);
+    ImGui::SetNextItemWidth(-92 * style.scale);
     if (ImGui::InputTextWithHint("##search", "search by name, component or field", &search_)
         || was_empty != search_.empty()) {
         rows_built_at_ = -1.0;
     }
+    ImGui::SameLine();
+    draw_place_button();
     const bool has_selected = exists(world, selected_);
     const float room = ImGui::GetContentRegionAvail().y;
     ImGui::BeginChild("##tree", {0, has_selected ? 0.36f * room : 0.0f});
@@ -419,6 +436,29 @@ void Inspector::draw_add_button(World& world) {
             apply_edit_value(world, edit, edit.after);
             undo_.record(std::move(edit));
         }
+    }
+    ImGui::EndPopup();
+}
+
+void Inspector::draw_place_button() {
+    ImGui::BeginDisabled(level_.empty());
+    const bool opens = ImGui::Button("Place ...", {-1, 0});
+    ImGui::EndDisabled();
+    if (opens) {
+        const Result<std::vector<std::string>> names = prefab_names(level_);
+        prefabs_ = names ? *names : std::vector<std::string>();
+        ImGui::OpenPopup("##place");
+    }
+    if (!ImGui::BeginPopup("##place")) {
+        return;
+    }
+    for (const std::string& name : prefabs_) {
+        if (ImGui::Selectable(name.c_str())) {
+            placed_ = name;
+        }
+    }
+    if (prefabs_.empty()) {
+        ImGui::TextDisabled("this level has no prefabs");
     }
     ImGui::EndPopup();
 }

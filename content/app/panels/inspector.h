@@ -5,6 +5,7 @@
 #include "content/app/panels/subtree_edits.h"
 #include "content/app/panels/undo.h"
 #include "ecs/any_component.h"
+#include "ecs/base/math.h"
 #include "ecs/entity.h"
 
 #include <cstdint>
@@ -58,8 +59,14 @@ class Inspector {
     [[nodiscard]] bool take_save() { return std::exchange(save_, false); }
     /// Whether "Show skeleton" of the selected entity was pressed since the last call.
     [[nodiscard]] bool take_skeleton() { return std::exchange(skeleton_, false); }
-    /// For a new world: clears the selection and the undo stack.
-    void reset();
+    /// For a new world: clears the selection and the undo stack. `level`: the file it was loaded
+    /// from, whose prefabs can be placed.
+    void reset(const std::string& level = {});
+    /// Selects a new instance of a prefab of the level, at a place in the world. Returns a line for
+    /// the user, as run() does.
+    std::string place(World& world, const std::string& prefab, const Vec3& position);
+    /// The prefab that was chosen in the list since the last call; "" for none.
+    [[nodiscard]] std::string take_placed() { return std::exchange(placed_, {}); }
 
     bool open = false;
 
@@ -78,6 +85,8 @@ class Inspector {
     void draw_edits(World& world);
     void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
+    /// The prefabs of the level, to choose one.
+    void draw_place_button();
     /// Cut, copy, paste ... of the selected entity, as items of a menu.
     void draw_tree_menu(World& world);
     /// Buttons and counts above the fields of a selected particle emitter.
@@ -104,7 +113,10 @@ class Inspector {
     std::string search_;
     std::string resource_search_;
     std::string material_search_;
-    std::string message_;  ///< for take_message()
+    std::string message_;               ///< for take_message()
+    std::string level_;                 ///< file of the level
+    std::string placed_;                ///< for take_placed()
+    std::vector<std::string> prefabs_;  ///< of the level, when the list was opened
     bool focus_ = false;
     bool step_ = false;
     bool furrows_ = false;

@@ -3,6 +3,7 @@
 #include "content/app/panels/hud_style.h"
 #include "ecs/components/animation.h"
 #include "ecs/components/name.h"
+#include "ecs/components/pose_keys.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 
@@ -18,9 +19,10 @@
 namespace limn {
 namespace {
 
-std::string clip_label(const Assets& assets, ClipId clip) {
+/// `none`: what is shown without a clip.
+std::string clip_label(const Assets& assets, ClipId clip, const char* none) {
     if (clip.index >= assets.clips.size()) {
-        return "rest pose";
+        return none;
     }
     const ClipData& data = assets.clips[clip.index];
     return fmt::format(
@@ -31,12 +33,13 @@ std::string clip_label(const Assets& assets, ClipId clip) {
 void draw_clips(World& world, Entity character) {
     ClipPlayer& player = world.get<ClipPlayer>(character);
     const Assets& assets = world.resource<Assets>();
+    const char* const none = world.has<PoseKeys>(character) ? "poses by hand" : "rest pose";
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::BeginCombo("##clip", clip_label(assets, player.clip).c_str())) {
+    if (ImGui::BeginCombo("##clip", clip_label(assets, player.clip, none).c_str())) {
         for (std::uint32_t i = 0; i <= assets.clips.size(); ++i) {
             const ClipId clip = i < assets.clips.size() ? ClipId{i} : ClipId{};
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(clip_label(assets, clip).c_str(), clip == player.clip)) {
+            if (ImGui::Selectable(clip_label(assets, clip, none).c_str(), clip == player.clip)) {
                 player.clip = clip;
                 player.time = 0;
             }

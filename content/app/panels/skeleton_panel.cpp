@@ -327,10 +327,10 @@ void SkeletonPanel::draw_view() {
     ImGui::SliderInt("Ghosts on each side", &overlay_.ghosts, 0, 12);
     ImGui::SliderFloat(
         "Time between", &overlay_.ghost_step, 0.02f, 1, "%.2f s", ImGuiSliderFlags_AlwaysClamp);
-    if (!overlay_.trails.empty()) {
-        ImGui::SliderFloat(
-            "Length of trails", &overlay_.trail, 0.1f, 3, "%.1f s", ImGuiSliderFlags_AlwaysClamp);
-    }
+    ImGui::BeginDisabled(overlay_.trails.empty());
+    ImGui::SliderFloat(
+        "Length of trails", &overlay_.trail, 0.1f, 3, "%.1f s", ImGuiSliderFlags_AlwaysClamp);
+    ImGui::EndDisabled();
     ImGui::Checkbox("Curves of the selected joint", &curves_);
 }
 
@@ -372,7 +372,7 @@ void SkeletonPanel::draw_curves(const HudStyle& style, const CharacterView& view
         list->AddLine({corner.x, y}, {corner.x + size.x, y}, grid);
         list->AddText(
             {corner.x + 2, y - ImGui::GetFontSize()}, IM_COL32(255, 255, 255, 110),
-            fmt::format("{:.0f}", v).c_str());
+            fmt::format("{:.0f}", std::round(v) + 0.0).c_str());  // + 0: no "-0"
     }
     list->AddLine({x_of(0), corner.y}, {x_of(0), corner.y + size.y}, IM_COL32(255, 255, 255, 130));
     for (std::size_t c = 0; c < found.curves.size(); ++c) {

@@ -28,6 +28,8 @@ class SkeletonPanel {
     void open(Entity character);
     void close() { character_ = {}; }
     [[nodiscard]] bool is_open() const { return !character_.is_null(); }
+    /// The one that is shown; null: none.
+    [[nodiscard]] Entity character() const { return character_; }
     /// Whether poses are edited.
     [[nodiscard]] bool poses() const { return is_open() && poses_; }
     /// For a new world.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/entity.h"
 #include "systems/subtrees.h"
@@ -10,6 +11,7 @@ namespace limn {
 
 class UndoStack;
 class World;
+struct Prefab;
 
 // Cut, copy, paste and delete of entities with their descendants, as commands with undo
 // (engine.cut-copy-paste): what the inspector's buttons and keys do.
@@ -34,10 +36,13 @@ class SubtreeEditor {
     paste(World& world, UndoStack& undo, Entity parent, KeptPlace kept = KeptPlace::World);
     /// Copies the entity beside itself, below the same parent.
     [[nodiscard]] Result<std::string> duplicate(World& world, UndoStack& undo, Entity entity);
+    /// An instance of a prefab, with its root at a place in the world.
+    [[nodiscard]] Result<std::string>
+    place(World& world, UndoStack& undo, const Prefab& prefab, const Vec3& position);
     /// Takes all components of the entity and its descendants: they are gone until undo.
     [[nodiscard]] Result<std::string> remove(World& world, UndoStack& undo, Entity entity);
 
-    /// What the last paste or duplicate made or moved.
+    /// What the last paste, place or duplicate made or moved.
     [[nodiscard]] Entity pasted() const { return pasted_; }
     void reset() { *this = {}; }
 

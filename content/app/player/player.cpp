@@ -171,6 +171,9 @@ Status Player::run() {
         if (inspector_.take_focus()) {
             focus_selection();
         }
+        if (const std::string prefab = inspector_.take_placed(); !prefab.empty()) {
+            place_prefab(prefab);
+        }
         if (inspector_.take_furrows()) {
             edit_furrows();
         }

@@ -102,6 +102,8 @@ class Player {
     [[nodiscard]] Vec3 model_center() const;
     /// Orbits the selection, and frames it.
     void focus_selection();
+    /// An instance of a prefab where the middle of the view is.
+    void place_prefab(const std::string& prefab);
     void go_home();
     /// Orbits the point under the pointer.
     void focus_under_pointer();

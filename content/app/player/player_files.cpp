@@ -142,8 +142,8 @@ void Player::save_edits() {
     }
     const std::string path =
         edited_path_.empty() ? new_edited_path(stage_->scene.path) : edited_path_;
-    const Result<EditedLevel> level =
-        edited_level(stage_->scene.path, path, stage_->world, edits.done());
+    const Result<EditedLevel> level = edited_level(
+        stage_->scene.path, path, stage_->world, edits.done(), stage_->scene.fields.entities);
     const Status status = level ? write_file(path, level->text) : Status(level.error());
     report_saved(path, status);
     if (!status) {

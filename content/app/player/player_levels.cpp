@@ -34,7 +34,7 @@ Status Player::load(const std::string& scene, const std::string& show) {
     options_.show = show;
     level_times_ = level_file_times();
     level_error_.clear();
-    inspector_.reset();
+    inspector_.reset(stage_->scene.model ? "" : stage_->scene.path);
     edited_path_.clear();
     furrows_.reset();
     skeleton_.reset();

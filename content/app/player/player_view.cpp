@@ -128,7 +128,10 @@ void Player::focus_under_pointer() {
 }
 
 void Player::focus_selection() {
-    const Entity selected = inspector_.selected();
+    Entity selected = inspector_.selected();
+    if (selected.is_null()) {  // the character whose skeleton is shown
+        selected = skeleton_.character();
+    }
     const std::optional<Vec3> center = entity_center(stage_->world, selected);
     if (!center) {
         hud_->toast("nothing is selected: click an object, or choose one in the inspector (F2)");
@@ -142,6 +145,14 @@ void Player::focus_selection() {
             camera_, glm::length(half_extent(box)),
             static_cast<float>(view_request_.width) / static_cast<float>(view_request_.height));
     }
+}
+
+void Player::place_prefab(const std::string& prefab) {
+    constexpr float kAhead = 5.0f;  // [m] if nothing is there
+    const Ray ray = ray_through(view_, {0.5f, 0.5f});
+    const std::optional<Hit> hit = pick_entity(stage_->world, ray);
+    const float distance = hit ? hit->distance : kAhead;
+    hud_->toast(inspector_.place(stage_->world, prefab, ray.origin + distance * ray.direction));
 }
 
 void Player::edit_furrows() {

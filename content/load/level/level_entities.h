@@ -42,7 +42,8 @@ struct GltfUse {
 class LevelEntities {
   public:
     /// `prefabs` are those of `file` and must outlive this, as must `errors`, which collects
-    /// errors. `names` resolves assets.
+    /// errors. `names` resolves assets; if it resolves entities, then those that neither a separate
+    /// prefab nor the list defines.
     LevelEntities(
         std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
         const EntityLimits& limits, ErrorList& errors);

@@ -167,7 +167,11 @@ struct EventReader {
                 at, member.at, fmt::format("the {} {}", noun, in_quotes(member.key)),
                 "one of `limn components`" + event_hint(member.key, hint));
         }
-        LIMN_TRY(read_edits(member.value, *info, location_in(at, member.key), names, action));
+        if (action.action == EventAction::Remove) {
+            action.value = AnyComponent(*info);
+        } else {
+            LIMN_TRY(read_edits(member.value, *info, location_in(at, member.key), names, action));
+        }
         event.actions.push_back(std::move(action));
         return Done{};
     }
@@ -193,6 +197,9 @@ struct EventReader {
             LIMN_TRY(
                 expect(target.value, JsonKind::Object, inner, "an object: components by name"));
             for (const JsonMember& component : target.value.members) {
+                const bool removes =
+                    kind == EventAction::Set && component.value.kind == JsonKind::Null;
+                action.action = removes ? EventAction::Remove : kind;
                 LIMN_TRY(read_change(
                     component, find_component(component.key), component_suggestion(component.key),
                     action, inner));

@@ -16,7 +16,7 @@ namespace limn {
 //       "key": "G",                  // instead of a time: when this key is pressed, or "released":
 //       "text": "strike the iron",   // shown in the help
 //       // assigns fields
-//       "set": {"lamp": {"point_light": {"enabled": false}}},
+//       "set": {"lamp": {"point_light": {"enabled": false}, "spin": null}},  // null removes it
 //       "set_resources": {"exposure": {"ev": -1}},
 //       // adds to numbers, composes rotations, steps through enumerations and bools
 //       "impulse": {"lamp": {"transform": {"position": [0, 1, 0]}}},

@@ -399,8 +399,9 @@ JsonValue schema_of_event() {
                           "number of repetitions of \"every\"; without it, unlimited")),
          schema_member(
              "set", described(
-                        map_of(schema_of_components({}, false)),
-                        "new values of fields, by entity, component and field")),
+                        map_of(reference("components")),
+                        "new values of fields, by entity, component and field; null removes a "
+                        "component")),
          schema_member(
              "set_resources",
              described(schema_of_resources(), "new values of fields, by resource and field")),
