@@ -279,7 +279,11 @@ int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpPr
     }
     const auto* const rendering = world.find_resource<Rendering>();
     if (rendering != nullptr && rendering->plain_below > 0) {
-        rounds.push_back({.all_lights = true, .plain_below = INFINITY});
+        const std::vector<Round> detailed = rounds;
+        for (Round round : detailed) {
+            round.plain_below = INFINITY;
+            rounds.push_back(round);
+        }
     }
     const int total = static_cast<int>(rounds.size() * views.size());
     int done = 0;

@@ -55,6 +55,11 @@ std::string kind_of(const GltfScene& scene, Material material) {
 /// Why the material cannot be in an atlas; empty: it can.
 std::string obstacle(const GltfScene& scene, std::uint32_t number) {
     const Material& material = scene.materials[number];
+    for (TextureSlot Material::*const slot : kExtraSlots) {
+        if ((material.*slot).image.index != kNoAsset) {
+            return "found a relief, detail, wrinkle or light map, expected maps of glTF";
+        }
+    }
     for (TextureSlot Material::*const slot : kGltfSlots) {
         const TextureSlot& texture = material.*slot;
         if (texture.image.index == kNoAsset) {
@@ -68,8 +73,7 @@ std::string obstacle(const GltfScene& scene, std::uint32_t number) {
         if (texture.uv_set != 0 || texture.offset != Vec2(0) || texture.scale != Vec2(1)
             || texture.rotation != 0) {
             return fmt::format(
-                "found the image {} moved or of the second set of texture coordinates, expected "
-                "the first as it is",
+                "found a texture transform or TEXCOORD_1 with the image {}, expected neither",
                 in_quotes(image.name));
         }
     }
@@ -126,7 +130,8 @@ void move_into_cells(
 
 /// The textures of the members as atlases of the first of them.
 void merge_group(
-    GltfScene& scene, std::span<const std::uint32_t> group, const SceneAtlasOptions& options) {
+    GltfScene& scene, std::span<const std::uint32_t> group, const SceneAtlasOptions& options,
+    SceneAtlasReport& report) {
     std::map<SlotImages, std::size_t> cell_of;
     std::vector<SlotImages> textures;
     std::map<std::uint32_t, std::size_t> cells;
@@ -145,8 +150,21 @@ void merge_group(
             }
         }
     }
+    if (textures.size() == 1) {  // the same material several times
+        for (GltfNode& node : scene.nodes) {
+            for (GltfPart& part : node.parts) {
+                part.material = cells.contains(part.material) ? group.front() : part.material;
+            }
+        }
+        return;
+    }
     const AtlasLayout layout =
         lay_out_atlas(textures.size(), largest, options.max_size, options.gutter);
+    if (layout.cell < largest) {
+        report.notes.push_back(fmt::format(
+            "textures of up to {} pixels have {} in the atlas, whose sides are at most {}", largest,
+            layout.cell, options.max_size));
+    }
     Material merged = scene.materials[group.front()];
     std::map<std::vector<std::uint32_t>, std::uint32_t> made;  // slots with the same images share
     for (std::size_t slot = 0; slot < std::size(kGltfSlots); ++slot) {
@@ -169,14 +187,15 @@ void merge_group(
         }
         texture.image.index = at->second;
         texture.wrap_u = texture.wrap_v = Wrap::Clamp;
-        texture.lod_range.y = static_cast<float>(last_atlas_level(layout));
+        texture.lod_range.y =
+            std::min(texture.lod_range.y, static_cast<float>(last_atlas_level(layout)));
     }
     const std::uint32_t first = group.front();
     scene.materials[first] = std::move(merged);
     move_into_cells(scene, layout, cells, first);
 }
 
-/// Removes meshes, materials and images that no node has.
+/// Removes meshes, materials and images that no node has, which must have no components.
 void drop_unused(GltfScene& scene) {
     std::vector<std::uint32_t> mesh_number(scene.meshes.size(), kNoAsset);
     std::vector<std::uint32_t> material_number(scene.materials.size(), kNoAsset);
@@ -196,29 +215,13 @@ void drop_unused(GltfScene& scene) {
             take(scene.meshes, meshes, mesh_number, part.mesh);
             take(scene.materials, materials, material_number, part.material);
         }
-        for (AnyComponent& component : node.components) {
-            for_each_asset(
-                component.info().fields, component.data(),
-                [&](std::string_view kind, std::uint32_t& index) {
-                    if (kind == "mesh") {
-                        take(scene.meshes, meshes, mesh_number, index);
-                    } else if (kind == "material") {
-                        take(scene.materials, materials, material_number, index);
-                    } else if (kind == "image") {
-                        take(scene.images, images, image_number, index);
-                    }
-                });
-        }
     }
     for (Material& material : materials) {
         const auto number = [&](TextureSlot Material::*slot) {
             take(scene.images, images, image_number, (material.*slot).image.index);
         };
         std::ranges::for_each(kGltfSlots, number);
-        number(&Material::relief_texture);
-        number(&Material::detail_texture);
-        number(&Material::wrinkle_texture);
-        number(&Material::light_map_texture);
+        std::ranges::for_each(kExtraSlots, number);
     }
     scene.meshes = std::move(meshes);
     scene.materials = std::move(materials);
@@ -228,25 +231,31 @@ void drop_unused(GltfScene& scene) {
 }  // namespace
 
 SceneAtlasReport merge_materials(GltfScene& scene, const SceneAtlasOptions& options) {
+    drop_unused(scene);
     SceneAtlasReport report;
     report.materials_before = scene.materials.size();
     report.images_before = scene.images.size();
     std::map<std::string, std::vector<std::uint32_t>> groups;
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) {
-        if (!has_texture(scene.materials[i])) {
-            continue;
-        }
-        const std::string why = obstacle(scene, i);
-        if (why.empty()) {
+        if (has_texture(scene.materials[i])) {
             groups[kind_of(scene, scene.materials[i])].push_back(i);
-        } else {
-            report.kept.push_back(
-                fmt::format("material {}: {}", in_quotes(scene.materials[i].name), why));
         }
     }
-    for (const auto& [kind, group] : groups) {
+    for (auto& [kind, group] : groups) {
+        if (group.size() < 2) {
+            continue;
+        }
+        std::erase_if(group, [&](std::uint32_t number) {
+            const std::string why = obstacle(scene, number);
+            if (!why.empty()) {
+                report.notes.push_back(fmt::format(
+                    "material {}: {}; it keeps its textures",
+                    in_quotes(scene.materials[number].name), why));
+            }
+            return !why.empty();
+        });
         if (group.size() > 1) {
-            merge_group(scene, group, options);
+            merge_group(scene, group, options, report);
         }
     }
     drop_unused(scene);

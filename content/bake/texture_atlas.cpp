@@ -33,12 +33,30 @@ std::array<float, 256> value_table(bool srgb) {
     return values;
 }
 
-/// Calls `add` with each of `count` rows or columns in [from, to), and how much of it is there.
-template <typename Add>
-void for_covered(double from, double to, int count, Add add) {
-    for (int i = static_cast<int>(from); i < count && i < to; ++i) {
-        add(i, std::min<double>(to, i + 1) - std::max<double>(from, i));
+/// A texel, and how much it counts.
+struct Tap {
+    int texel = 0;
+    double weight = 0;
+};
+
+/// What pixel `i` of `size` reads of a row of `count` texels stretched over it: the mean of what it
+/// covers where that is a texel or more, else the two about its center.
+std::vector<Tap> taps_of(std::size_t i, int size, int count) {
+    const double step = static_cast<double>(count) / size;
+    const double from = static_cast<double>(i) * step;
+    std::vector<Tap> taps;
+    if (step < 1) {
+        const double center = std::clamp(from + 0.5 * step - 0.5, 0.0, count - 1.0);
+        const int low = std::min(static_cast<int>(center), std::max(count - 2, 0));
+        taps = {{low, 1 - (center - low)}, {std::min(low + 1, count - 1), center - low}};
+        return taps;
     }
+    for (int texel = static_cast<int>(from); texel < count && texel < from + step; ++texel) {
+        const double covered =
+            std::min<double>(from + step, texel + 1) - std::max<double>(from, texel);
+        taps.push_back({texel, covered / step});
+    }
+    return taps;
 }
 
 /// A texture stretched over a square of `size` pixels.
@@ -48,27 +66,33 @@ std::vector<std::uint8_t> stretched(const ImageData& texture, int size) {
     }
     const std::array<float, 256> color = value_table(texture.srgb);
     const std::array<float, 256> data = value_table(false);
-    const double step_x = static_cast<double>(texture.width) / size;
-    const double step_y = static_cast<double>(texture.height) / size;
+    std::vector<std::vector<Tap>> across;
+    for (int x = 0; x < size; ++x) {
+        across.push_back(taps_of(static_cast<std::size_t>(x), size, texture.width));
+    }
     const auto columns = static_cast<std::size_t>(size);
     std::vector<std::uint8_t> pixels(4 * columns * columns);
     parallel_for(columns, 16, [&](std::size_t begin, std::size_t end) {
+        std::vector<Tap> down;
         for (std::size_t i = begin * columns; i < end * columns; ++i) {
-            const auto x = static_cast<double>(i % columns);
-            const auto y = static_cast<double>(i / columns);
+            if (i % columns == 0) {
+                down = taps_of(i / columns, size, texture.height);
+            }
             std::array<double, 4> sum{};
-            for_covered(y * step_y, (y + 1) * step_y, texture.height, [&](int row, double down) {
-                for_covered(x * step_x, (x + 1) * step_x, texture.width, [&](int at, double wide) {
+            for (const Tap& row : down) {
+                for (const Tap& column : across[i % columns]) {
                     const std::uint8_t* const texel =
-                        &texture.pixels[4 * static_cast<std::size_t>(row * texture.width + at)];
+                        &texture.pixels
+                             [4
+                              * static_cast<std::size_t>(row.texel * texture.width + column.texel)];
                     for (std::size_t c = 0; c < 4; ++c) {
-                        sum[c] +=
-                            down * wide * static_cast<double>((c < 3 ? color : data)[texel[c]]);
+                        sum[c] += row.weight * column.weight
+                                  * static_cast<double>((c < 3 ? color : data)[texel[c]]);
                     }
-                });
-            });
+                }
+            }
             for (std::size_t c = 0; c < 4; ++c) {
-                const auto mean = static_cast<float>(sum[c] / (step_x * step_y));
+                const auto mean = static_cast<float>(sum[c]);
                 const float stored = texture.srgb && c < 3 ? srgb_from_linear(mean) : mean;
                 pixels[4 * i + c] =
                     static_cast<std::uint8_t>(std::lround(255 * std::clamp(stored, 0.0f, 1.0f)));
@@ -103,7 +127,8 @@ AtlasCell atlas_cell(const AtlasLayout& layout, std::size_t cell) {
 }
 
 int last_atlas_level(const AtlasLayout& layout) {
-    return std::bit_width(static_cast<unsigned>(layout.cell)) - 1;
+    const int side = layout.gutter > 0 ? 2 * layout.gutter : layout.cell;
+    return std::bit_width(static_cast<unsigned>(side)) - 1;
 }
 
 ImageData make_atlas(const AtlasLayout& layout, std::span<const ImageData* const> textures) {

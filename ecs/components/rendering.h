@@ -156,7 +156,7 @@ struct Rendering {
     bool screen_interpolation = false;
     HardwareDefects hardware = {};
     DetailLimit surface_detail = DetailLimit::Full;
-    float plain_below = 0;  ///< size in the image, see below [px]
+    float plain_below = 0;  ///< size in a view [px]
     LobeSource lobes = LobeSource::Computed;
     Normalization normalization = Normalization::Computed;
     LightLoops light_loops = LightLoops::Uniform;
@@ -206,10 +206,10 @@ LIMN_FIELDS(Rendering) {
         .values = kDetailLimitNames);
     LIMN_FIELD(
         plain_below,
-        "surfaces whose box is smaller than this in the image have neither normal maps nor relief, "
-        "in every image alike, whatever was drawn before, unless they have normal_mips; 0: all "
-        "have "
-        "theirs",
+        "surfaces whose box is smaller than this in a view have neither normal maps nor relief; "
+        "depends only on that view (no hysteresis, so that frames of a farm are those of one "
+        "process), a probe's and a mirror's too; not with normal_mips, object normals or double "
+        "depth; 0: all have theirs",
         "px", 0, 16384);
     LIMN_FIELD(
         lobes,

@@ -19,9 +19,8 @@
 #include <cstring>
 #include <tuple>
 
-// Techniques: engine.batching, engine.lod-shader, engine.multi-material, engine.visibility-sets,
-// shade.batching,
-//     shade.pipeline-model
+// Techniques: engine.batching, engine.lod-shader, engine.multi-material,
+//     engine.visibility-sets, shade.batching, shade.pipeline-model
 
 namespace limn {
 namespace {

@@ -26,9 +26,9 @@ std::uint64_t hash_of(const MeshData& mesh) {
 
 std::vector<const PreparedMesh*>
 MeshMemory::prepare(std::span<const MeshData* const> meshes, bool curved) {
-    if (indices_ > kMaxIndices) {
+    if (bytes_ > kMaxBytes) {
         prepared_.clear();
-        indices_ = 0;
+        bytes_ = 0;
     }
     std::vector<std::uint64_t> keys(meshes.size());
     parallel_for(meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -36,7 +36,7 @@ MeshMemory::prepare(std::span<const MeshData* const> meshes, bool curved) {
             keys[i] = meshes[i] != nullptr ? hash_of(*meshes[i]) : 0;
         }
     });
-    // Each mesh once, though it be there twice: no two threads write to the same.
+    // Deduplicated, so that no two threads write the same entry.
     struct Missing {
         const MeshData* mesh;
         PreparedMesh* prepared;
@@ -71,9 +71,10 @@ MeshMemory::prepare(std::span<const MeshData* const> meshes, bool curved) {
         }
     });
     for (const Missing& one : missing) {
-        indices_ += one.fresh ? one.prepared->ordered.size() : 0;
+        bytes_ += curved ? one.prepared->curvatures.size() * sizeof(Vec2) : 0;
+        bytes_ += one.fresh ? 4 * one.prepared->ordered.size() : 0;
         for (const CoarseTriangles& level : one.prepared->coarse) {
-            indices_ += one.fresh ? level.indices.size() : 0;
+            bytes_ += one.fresh ? 4 * level.indices.size() : 0;
         }
     }
     return found;

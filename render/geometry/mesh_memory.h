@@ -29,9 +29,9 @@ class MeshMemory {
     prepare(std::span<const MeshData* const> meshes, bool curved);
 
   private:
-    static constexpr std::size_t kMaxIndices = std::size_t{1} << 25;  // then all is forgotten
+    static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;  // then the cache is cleared
     std::map<std::uint64_t, PreparedMesh> prepared_;  // by a hash of all that is read of a mesh
-    std::size_t indices_ = 0;
+    std::size_t bytes_ = 0;
 };
 
 }  // namespace limn

@@ -113,14 +113,17 @@ void MeshPool::update(std::span<const MeshData> meshes, bool curved) {
     const std::size_t known = std::min(meshes_.size(), meshes.size());
     meshes_.resize(std::max(meshes_.size(), meshes.size()));
     std::vector<char> drawable(meshes.size());
-    std::vector<const MeshData*> fresh(meshes.size());
+    std::vector<const MeshData*> to_prepare(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             drawable[i] = is_drawable(meshes[i]) ? 1 : 0;
-            fresh[i] = i >= known && drawable[i] != 0 ? &meshes[i] : nullptr;
+            to_prepare[i] = i >= known && drawable[i] != 0 ? &meshes[i] : nullptr;
+        } else if (curved && !curved_ && meshes_[i].index_count > 0) {
+            to_prepare[i] = &meshes[i];  // for its curvatures
         }
     }
-    const std::vector<const PreparedMesh*> prepared = memory_.prepare(fresh, curved || curved_);
+    const std::vector<const PreparedMesh*> prepared =
+        memory_.prepare(to_prepare, curved || curved_);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (i >= known || meshes_[i].version != meshes[i].version) {
             release(meshes_[i]);

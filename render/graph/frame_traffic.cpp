@@ -13,6 +13,9 @@ namespace {
 
 /// The part of a texture that is attached or, with a level or layer, read.
 std::size_t texture_part(gpu::TextureDesc desc, const Use& use) {
+    if (desc.target == GL_TEXTURE_3D) {
+        desc.depth = std::max(desc.depth >> use.level, 1);
+    }
     desc.width = std::max(desc.width >> use.level, 1);
     desc.height = std::max(desc.height >> use.level, 1);
     desc.levels = 1;

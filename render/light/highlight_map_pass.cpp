@@ -109,10 +109,12 @@ void HighlightMapEffect::collect(FrameData& frame) {
     const auto& materials = frame.assets->materials;
     if (is_in_use(frame, HighlightMap::Blinn)) {
         blinn.layers = layers_by_exponent(materials);
+        frame.materials->append_plain(blinn.layers.of_record);
         blinn.layer_of_material.upload(*frame.ring, blinn.layers.of_record);
     }
     if (is_in_use(frame, HighlightMap::Environment)) {
         environment.layers = layers_by_material(materials);
+        frame.materials->append_plain(environment.layers.of_record);
         environment.layer_of_material.upload(*frame.ring, environment.layers.of_record);
     }
 }

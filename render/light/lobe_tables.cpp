@@ -127,6 +127,7 @@ void LobeTableEffect::collect(FrameData& frame) {
     }
     std::vector<std::uint32_t> of_record = {0, 0};  // without a material, and with a missing one
     of_record.insert(of_record.end(), lobes.of_material.begin(), lobes.of_material.end());
+    frame.materials->append_plain(of_record);
     layer_of_material.upload(*frame.ring, of_record);
     const LobeSource wanted = source_of(frame);
     if (!tables || source != wanted || baked != lobes.exponents) {

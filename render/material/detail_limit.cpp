@@ -44,7 +44,10 @@ SurfaceDetail limited_detail(SurfaceDetail detail, DetailLimit limit) {
 
 bool has_fine_detail(const Material& material) {
     const auto is_used = [](const TextureSlot& slot) { return slot.image.index != kNoAsset; };
-    return material.detail < kReliefBoxDetail && material.normal_mips == NormalMips::Plain
+    const bool is_shape = material.detail == SurfaceDetail::ObjectNormal
+                          || material.detail == SurfaceDetail::DoubleDepth
+                          || material.detail >= kReliefBoxDetail;
+    return !is_shape && material.normal_mips == NormalMips::Plain
            && (is_used(material.normal_texture) || is_used(material.relief_texture)
                || is_used(material.clearcoat_normal_texture));
 }

@@ -60,6 +60,16 @@ class MaterialPool {
         return plain_of_[record];
     }
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
+    /// Appends to a table by the records of assets' materials what plain records have, that of the
+    /// same material.
+    template <typename T>
+    void append_plain(std::vector<T>& of_record) const {
+        for (std::size_t i = 0; i < plain_of_.size(); ++i) {
+            if (plain_of_[i] != i) {  // in rising order
+                of_record.push_back(of_record[i]);
+            }
+        }
+    }
     /// Counts the changes of records and batches.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     /// stored_number() of its shading model, kLayeredModel for one with layers.

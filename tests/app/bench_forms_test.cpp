@@ -140,6 +140,7 @@ TEST_CASE(
     CHECK(read(0.6f, 0).x == near(std::acos(0.6)).epsilon(1e-4));
     CHECK(read(1, 0.8f).x == near(0).epsilon(1e-6));
     CHECK(read(-1, 0.8f).x == near(kPi).epsilon(1e-6));
+    // Of a fine grid; the specification's 0.0066, 0.036 and 0.074 are of a coarser one.
     struct Bound {
         double q;
         double error;

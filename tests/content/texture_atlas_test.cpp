@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <random>
 #include <string>
 #include <utility>
@@ -210,8 +211,64 @@ TEST_CASE("texture atlas: with a gutter, filters see the texture's own edge") {
     }
 }
 
+TEST_CASE(
+    "texture atlas: no filter of a level that may be read sees a neighbor"
+    * technique("engine.texture-atlas")) {
+    std::vector<ImageData> images(4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        images[i].width = images[i].height = 100;
+        for (int k = 0; k < 100 * 100; ++k) {
+            for (const std::size_t channel : {0u, 1u, 2u, 3u}) {
+                images[i].pixels.push_back(channel == i ? 255 : 0);
+            }
+        }
+    }
+    const AtlasLayout layout = lay_out_atlas(4, 100, 8192, 16);
+    REQUIRE(layout.cell == 128);
+    REQUIRE(layout.gutter == 4);
+    const ImageData atlas = make_atlas(layout, pointers(images));
+    REQUIRE(last_atlas_level(layout) == 3);
+    for (int level = 0; level <= 3; ++level) {
+        CAPTURE(level);
+        ImageData coarse;
+        coarse.width = coarse.height = atlas.width >> level;
+        coarse.pixels.resize(4 * static_cast<std::size_t>(coarse.width * coarse.height));
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            const std::vector<double> values = level_of(atlas, level, channel);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                coarse.pixels[4 * k + channel] = static_cast<std::uint8_t>(values[k]);
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const AtlasCell cell = atlas_cell(layout, i);
+            for (const Vec2 uv : {Vec2(0, 0), Vec2(1, 1), Vec2(0, 1), Vec2(1, 0), Vec2(0.5f, 1)}) {
+                const Vec3 found = sampled(coarse, cell.offset + cell.scale * uv);
+                CHECK(found[static_cast<int>(i)] == near(255).epsilon(1e-3));
+            }
+        }
+    }
+}
+
+TEST_CASE("texture atlas: a texture that is enlarged is interpolated") {
+    ImageData ramp;
+    ramp.width = 4;
+    ramp.height = 1;
+    for (const int value : {0, 60, 120, 180}) {
+        ramp.pixels.insert(ramp.pixels.end(), 4, static_cast<std::uint8_t>(value));
+    }
+    const AtlasLayout layout = {.columns = 1, .rows = 1, .cell = 64, .gutter = 0};
+    const ImageData atlas = make_atlas(layout, std::vector<const ImageData*>{&ramp});
+    for (int x = 1; x < 64; ++x) {
+        const int step = *texel(atlas, x, 20) - *texel(atlas, x - 1, 20);
+        CHECK(step >= 0);
+        CHECK(step <= 5);  // 60 of 255 in 16 pixels
+    }
+    CHECK(*texel(atlas, 0, 0) == 0);
+    CHECK(*texel(atlas, 63, 63) == 180);
+}
+
 TEST_CASE("texture atlas: a stretched texture keeps its mean, in linear light") {
-    const std::vector<ImageData> images = {noise(100, 37, 4, true), noise(640, 129, 5, true)};
+    const std::vector<ImageData> images = {noise(100, 77, 4, true), noise(640, 129, 5, true)};
     const AtlasLayout layout = {.columns = 2, .rows = 1, .cell = 64, .gutter = 0};
     const ImageData atlas = make_atlas(layout, pointers(images));
     CHECK(atlas.srgb);
@@ -242,7 +299,7 @@ TEST_CASE(
     const GltfScene before = tiles(5);
     GltfScene scene = before;
     const SceneAtlasReport report = merge_materials(scene, {.gutter = 0});
-    CHECK(report.kept.empty());
+    CHECK(report.notes.empty());
     CHECK(report.materials_before == 5);
     CHECK(report.materials == 1);
     CHECK(report.images == 1);
@@ -273,15 +330,15 @@ TEST_CASE("scene atlas: what tiles, is moved or differs in more than its texture
     scene.meshes[4].uvs.clear();
     const GltfScene before = scene;
     const SceneAtlasReport report = merge_materials(scene);
-    REQUIRE(report.kept.size() == 3);
+    REQUIRE(report.notes.size() == 2);
     CHECK(
-        report.kept[0]
+        report.notes[0]
         == "material \"tile1\": found texture coordinates (4, 4) in the mesh \"square1\", expected "
            "0 "
-           "to 1: an atlas cannot tile");
-    CHECK(report.kept[1].starts_with("material \"tile2\": found the image \"noise2\" moved"));
+           "to 1: an atlas cannot tile; it keeps its textures");
     CHECK(
-        report.kept[2].find("no texture coordinates in the mesh \"square4\"") != std::string::npos);
+        report.notes[1].find("no texture coordinates in the mesh \"square4\"")
+        != std::string::npos);
     CHECK(report.materials == 5);  // tile0 and tile5 are one
     CHECK(scene.nodes[0].parts[0].material == scene.nodes[5].parts[0].material);
     for (const std::size_t i : {1u, 2u, 3u, 4u}) {
@@ -310,6 +367,43 @@ TEST_CASE(
     CHECK(scene.images[0].width == 2 * 64);
 }
 
+TEST_CASE("scene atlas: levels of a file that are no two levels are told, and all are read") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("levels.gltf");
+    for (const char* range :
+         {"[0, 4, 0]", "[3]", "\"low\"", "[0, \"4\"]", "[4, 0]", "[-1, 99]", "{}", "[0, 4]"}) {
+        CAPTURE(range);
+        std::ofstream(path)
+            << R"({"asset": {"version": "2.0"}, "materials": [{"pbrMetallicRoughness":
+            {"baseColorTexture": {"index": 0}}}], "textures": [{"source": 0, "sampler": 0}],
+            "samplers": [{"extras": {"limn": {"lod_range": )"
+            << range << R"(}}}], "images": [{"uri": "data:image/png;base64,)"
+            << "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAA"
+               "ABJRU5ErkJggg=="
+            << R"("}]})";
+        const Result<GltfScene> read = load_gltf(path);
+        REQUIRE_MESSAGE(read.ok(), (read ? std::string() : read.error().message));
+        const bool is_good = std::string(range) == "[0, 4]";
+        CHECK(
+            read->materials[0].base_color_texture.lod_range
+            == (is_good ? Vec2(0, 4) : TextureSlot{}.lod_range));
+        CHECK(read->warnings.empty() == is_good);
+    }
+}
+
+TEST_CASE("scene atlas: relief whose only image is missing is gone, not another image") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("relief.gltf");
+    std::ofstream(path) << R"({"asset": {"version": "2.0"}, "materials": [{"extras": {"limn":
+        {"relief_texture": {"index": 0}}}}], "textures": [{"source": 0}],
+        "images": [{"uri": "missing.png"}]})";
+    Result<GltfScene> read = load_gltf(path);
+    REQUIRE_MESSAGE(read.ok(), (read ? std::string() : read.error().message));
+    CHECK(read->images.empty());
+    CHECK(read->materials[0].relief_texture.image.index == kNoAsset);
+    (void)merge_materials(*read);
+}
+
 TEST_CASE("scene atlas: a written file says which mip levels may be read") {
     GltfScene scene = tiles(4);
     (void)merge_materials(scene);
@@ -319,7 +413,7 @@ TEST_CASE("scene atlas: a written file says which mip levels may be read") {
     const Result<GltfScene> read = load_gltf(path);
     REQUIRE_MESSAGE(read.ok(), (read ? std::string() : read.error().message));
     REQUIRE(read->materials.size() == 1);
-    CHECK(read->materials[0].base_color_texture.lod_range == Vec2(0, 4));
+    CHECK(read->materials[0].base_color_texture.lod_range == Vec2(0, 1));
     CHECK(read->materials[0].base_color_texture.wrap_v == Wrap::Clamp);
     CHECK(read->images[0].pixels == scene.images[0].pixels);
 }

@@ -124,11 +124,12 @@ TEST_CASE_FIXTURE(
     front.base_color = {0.25f, 0.5f, 1, 0.5f};
     Material back = front;
     back.base_color = {1, 0, 0, 1};
-    place(square, add(front), at({0, 0, 0}));
-    const RenderView view = look({0, 0, 1}, {0, 0, 0});
-    const gpu::FloatImage alone = radiance(view);
     place(square, add(back), at({0, 0, -0.25f}));
-    CHECK(largest_difference(radiance(view), alone) == 0);
+    place(square, add(front), at({0, 0, 0}));
+    const Vec3 center = rgb_at(radiance(look({0, 0, 1}, {0, 0, 0})), 32, 32);
+    for (int c = 0; c < 3; ++c) {
+        CHECK(center[c] == near(front.base_color[c]).epsilon(1e-3));
+    }
 }
 
 TEST_CASE_FIXTURE(

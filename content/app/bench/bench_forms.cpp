@@ -110,10 +110,10 @@ const std::vector<ShadingForm>& shading_forms() {
     static const std::vector<ShadingForm> forms = {
         {"constants of the object from the CPU", {"OBJECT_CONSTANTS"}},
         {"vector to the light per vertex", {"LIGHT_PER_VERTEX"}},
-        {"the same, normalized per vertex", {"LIGHT_PER_VERTEX", "UNIT_LIGHT"}},
+        {"direction to the light per vertex, wrong", {"LIGHT_PER_VERTEX", "UNIT_LIGHT"}},
         {"one normalization to tangent space", {"ONE_NORMALIZE"}},
         {"angles from a table", {"ANGLE_TABLE"}},
-        {"all but the third",
+        {"all but the wrong one",
          {"OBJECT_CONSTANTS", "LIGHT_PER_VERTEX", "ONE_NORMALIZE", "ANGLE_TABLE"}}};
     return forms;
 }
@@ -179,14 +179,14 @@ std::string form_bench_table(const FormBench& bench) {
     auto out = std::back_inserter(text);
     fmt::format_to(
         out,
-        "a ball, {} x {}, the best of {} frames, {} threads\n{}, OpenGL {}\n\n{:<38} {:>9} {:>9} "
+        "a ball, {} x {}, the best of {} frames, {} threads\n{}, OpenGL {}\n\n{:<40} {:>9} {:>9} "
         "{:>7} {:>9} {:>9}\n",
         bench.machine.size.x, bench.machine.size.y, bench.machine.frames, bench.machine.threads,
         bench.machine.gl_renderer, bench.machine.gl_version, "[ms]", "plain", "this", "ratio",
         "shade", "angle");
     for (const FormBenchPoint& point : bench.points) {
         fmt::format_to(
-            out, "{:<38} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.2g} {:>9.2g}\n", point.name,
+            out, "{:<40} {:>9.3f} {:>9.3f} {:>7.2f} {:>9.2g} {:>9.2g}\n", point.name,
             point.plain_ms, point.ms, point.ms / point.plain_ms, point.shade, point.angle);
     }
     return text;

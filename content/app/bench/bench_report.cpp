@@ -180,6 +180,7 @@ std::string bench_json(const BenchReport& report) {
         }
         json[key] = std::move(array);
     }
+    json["traffic"] = json["targets"] = nlohmann::ordered_json::array();
     for (const BenchTraffic& one : report.traffic) {
         json["traffic"].push_back(
             {{"pass", one.pass}, {"read_mib", one.read_mib}, {"written_mib", one.written_mib}});

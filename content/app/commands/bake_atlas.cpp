@@ -7,6 +7,7 @@
 #include "content/load/gltf/gltf_write.h"
 #include "content/load/scene_mesh.h"
 #include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/reflect.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ namespace limn {
 
 struct AtlasRecipe {
     int max_size = 8192;
-    float gutter = 8;
+    float gutter = 16;
 };
 
 LIMN_FIELDS(AtlasRecipe) {
@@ -27,15 +28,38 @@ LIMN_FIELDS(AtlasRecipe) {
     LIMN_FIELD(gutter, "around each texture, of 512 pixels of its cell", "px", 0, 128);
 }
 
+namespace {
+
+/// What glTF files of ours do not have is left out, with a line each.
+void drop_unwritten(const std::string& path, GltfScene& scene) {
+    for (GltfNode& node : scene.nodes) {
+        if (node.has_camera || node.light.index() != 0 || !node.components.empty()) {
+            log_warn(
+                "{}: node {}: its camera, light or components are left out", path,
+                in_quotes(node.name));
+        }
+        node.has_camera = false;
+        node.light = {};
+        node.components.clear();
+    }
+    if (!scene.variants.empty()) {
+        log_warn("{}: variants of materials are left out", path);
+        scene.variants.clear();
+    }
+}
+
+}  // namespace
+
 Status bake_atlas(const BakeOptions& options) {
     AtlasRecipe recipe;
     LIMN_TRY(read_recipe(options, recipe));
     register_game_components();
     GltfScene scene = LIMN_TRY(load_model_scene(options.in));
+    drop_unwritten(options.in, scene);
     const SceneAtlasReport report =
         merge_materials(scene, {.max_size = recipe.max_size, .gutter = recipe.gutter});
-    for (const std::string& line : report.kept) {
-        log_warn("{}: {}; it keeps its textures", options.in, line);
+    for (const std::string& line : report.notes) {
+        log_warn("{}: {}", options.in, line);
     }
     if (report.materials == report.materials_before) {
         return fail(

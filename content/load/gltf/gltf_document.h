@@ -5,6 +5,7 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -96,7 +97,8 @@ extension_of(const tinygltf::ExtensionMap& extensions, const char* name);
 template <typename T>
 [[nodiscard]] T vector_of(const tinygltf::Value& object, const char* name, T missing) {
     const tinygltf::Value& values = member_of(object, name);
-    for (std::size_t i = 0; i < values.ArrayLen(); ++i) {
+    const auto most = std::min(values.ArrayLen(), static_cast<std::size_t>(T::length()));
+    for (std::size_t i = 0; i < most; ++i) {
         missing[static_cast<int>(i)] =
             static_cast<float>(values.Get(static_cast<int>(i)).GetNumberAsDouble());
     }

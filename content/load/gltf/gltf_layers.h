@@ -49,6 +49,11 @@ inline constexpr TextureSlot Material::*kGltfSlots[] = {
     &Material::transmission_texture,
 };
 
+/// Maps that glTF does not have: those of extras.limn (gltf_material_extras.h), and light maps.
+inline constexpr TextureSlot Material::*kExtraSlots[] = {
+    &Material::relief_texture, &Material::detail_texture, &Material::wrinkle_texture,
+    &Material::light_map_texture};
+
 /// Sets the fields of the factors in these extensions.
 void read_layer_factors(const tinygltf::ExtensionMap& extensions, Material& material);
 

@@ -256,9 +256,7 @@ class MaterialBuilder {
             result.wrap_v = to_wrap(sampler.wrapT);
             result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
             result.minify = to_minify(sampler.minFilter);
-            const Vec2 all = result.lod_range;
-            const Vec2 levels = vector_of(member_of(sampler.extras, "limn"), "lod_range", all);
-            result.lod_range = glm::clamp(levels, Vec2(all.x), Vec2(all.y));
+            result.lod_range = lod_range_of(texture.sampler, result.lod_range);
         }
         const tinygltf::Value& transform = extension_of(info.extensions, "KHR_texture_transform");
         result.offset = vector_of(transform, "offset", Vec2(0));
@@ -271,6 +269,29 @@ class MaterialBuilder {
         }
         result.uv_set = set == 1 ? 1 : 0;
         return result;
+    }
+
+    /// Of extras.limn of a sampler, which no schema has checked.
+    Vec2 lod_range_of(int sampler, const Vec2& all) {
+        const JsonValue& range = extras_of(
+            document_, "samplers", static_cast<std::size_t>(sampler))["limn"]["lod_range"];
+        if (range.kind == JsonKind::Null) {
+            return all;
+        }
+        const auto is_level = [&](const JsonValue& value) {
+            return value.kind == JsonKind::Number && value.number >= static_cast<double>(all.x)
+                   && value.number <= static_cast<double>(all.y);
+        };
+        if (range.items.size() != 2 || !std::ranges::all_of(range.items, is_level)
+            || range.items[0].number > range.items[1].number) {
+            warn(fmt::format(
+                "samplers[{}].extras.limn.lod_range: expected the first and the last mip level, "
+                "two "
+                "numbers from {} to {}; all are used",
+                sampler, all.x, all.y));
+            return all;
+        }
+        return {range.items[0].number, range.items[1].number};
     }
 
     void warn(const std::string& what) {
@@ -375,13 +396,15 @@ void load_images(GltfDocument& document, const std::vector<UsedImage>& used, Glt
         }
     }
     for (Material& material : scene.materials) {
-        for (TextureSlot Material::*const slot : kGltfSlots) {
+        const auto renumber = [&](TextureSlot Material::*slot) {
             TextureSlot& texture = material.*slot;
             if (texture.image.index != kNoAsset) {
                 texture.image.index = numbers[texture.image.index];
                 texture = texture.image.index != kNoAsset ? texture : TextureSlot{};
             }
-        }
+        };
+        std::ranges::for_each(kGltfSlots, renumber);
+        std::ranges::for_each(kExtraSlots, renumber);
     }
 }
 
