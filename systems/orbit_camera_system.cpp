@@ -138,8 +138,9 @@ void update_orbit_cameras(
         Vec3 wanted = orbit_position(target, orbit.azimuth, orbit.elevation, orbit.distance);
         std::vector<JointPlaces> people;
         if (orbit.clearance > 0) {
-            people = find_bodies(
-                characters, orbit.target, point, 1.5f * orbit.distance + orbit.clearance);
+            // A camera that lags may be much farther off than it wants to be.
+            const float far = std::max(orbit.distance, glm::distance(transform.position, point));
+            people = find_bodies(characters, orbit.target, point, 1.5f * far + orbit.clearance);
             wanted = look_over_bodies(people, point, wanted, orbit.clearance);
         }
 

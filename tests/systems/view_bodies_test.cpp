@@ -217,6 +217,21 @@ TEST_CASE("follow camera: people who walk through it neither hide the hero nor a
     }
 }
 
+TEST_CASE("follow camera: one that lags far behind passes nobody on its way either") {
+    FollowStage stage(0);
+    stage.world.get<OrbitCamera>(stage.camera).follow = 0.02f;
+    stage.add_other({0, 0, 1});
+    stage.step(2);
+    stage.world.get<Transform>(stage.person).position.z += 10;
+    float nearest = 1e6f;
+    for (int i = 0; i < 240; ++i) {
+        stage.step();
+        nearest = std::min(nearest, nearest_joint(stage.bodies(), stage.eye()));
+    }
+    CHECK(nearest > kBodyRadius + kClearance - 1e-3f);
+    CHECK(stage.eye().z > 5);
+}
+
 TEST_CASE("follow camera: without a clearance it passes through people") {
     FollowStage stage(0);
     stage.world.get<OrbitCamera>(stage.camera).clearance = 0;
