@@ -447,6 +447,7 @@ TEST_CASE("edit script: what cannot be done is one line, and changes nothing") {
     CHECK(level.error("set lamp.name.text = box").find("a second \"box\"") != std::string::npos);
     CHECK(level.error("set lamp.name.text = a.b").find("without . [ ]") != std::string::npos);
     CHECK(level.error("set lamp.name.text = \"\"").find("found the name") != std::string::npos);
+    CHECK(level.error("remove lamp.name").find("a new one") != std::string::npos);
     CHECK(level.error("place lanter").find("did you mean lantern?") != std::string::npos);
     CHECK(level.error("redo").find("nothing to redo") != std::string::npos);
     level.run("copy street");

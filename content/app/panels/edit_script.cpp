@@ -147,6 +147,9 @@ Result<std::string> add_or_remove(World& world, UndoStack& undo, std::string_vie
             component_suggestion(name));
     }
     LIMN_TRY(expect_own_fields(*info));
+    if (info->id == component_id<Name>) {
+        return fail("found the component name, expected set {}.text = a new one", path);
+    }
     edit.before = AnyComponent::read(world, edit.entity, *info);
     if (edit.before.is_empty() != adds) {
         return fail(
