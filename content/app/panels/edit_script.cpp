@@ -2,6 +2,7 @@
 
 #include "content/app/panels/field_widgets.h"
 #include "content/load/files/json_document.h"
+#include "content/load/level/level_hints.h"
 #include "content/load/level/level_place.h"
 #include "content/load/level/set_value.h"
 #include "ecs/any_component.h"

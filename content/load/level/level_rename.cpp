@@ -14,18 +14,18 @@
 namespace limn {
 namespace {
 
-JsonValue* find_member(JsonValue& object, std::string_view key) {
+JsonValue* member_in(JsonValue& object, std::string_view key) {
     const auto found = std::ranges::find(object.members, key, &JsonMember::key);
     return found != object.members.end() ? &found->value : nullptr;
 }
 
 /// Of the member `key`; none if it is missing.
-std::span<JsonValue> items_of(JsonValue& object, std::string_view key) {
-    JsonValue* const member = find_member(object, key);
+std::span<JsonValue> elements_of(JsonValue& object, std::string_view key) {
+    JsonValue* const member = member_in(object, key);
     return member != nullptr ? std::span(member->items) : std::span<JsonValue>();
 }
-std::span<JsonMember> members_of(JsonValue& object, std::string_view key) {
-    JsonValue* const member = find_member(object, key);
+std::span<JsonMember> entries_of(JsonValue& object, std::string_view key) {
+    JsonValue* const member = member_in(object, key);
     return member != nullptr ? std::span(member->members) : std::span<JsonMember>();
 }
 
@@ -83,15 +83,15 @@ struct Renamer {
 
     /// An entity and its children; those of a prefab keep their names.
     void rename_node(JsonValue& node, bool is_own) const {
-        JsonValue* const name = find_member(node, "name");
+        JsonValue* const name = member_in(node, "name");
         if (is_own && name != nullptr) {
             rename(name->text);
         }
         rename_components(node);
-        for (JsonMember& changed : members_of(node, "nodes")) {
+        for (JsonMember& changed : entries_of(node, "nodes")) {
             rename_components(changed.value);
         }
-        rename_nodes(items_of(node, "children"), is_own);
+        rename_nodes(elements_of(node, "children"), is_own);
     }
 
     void rename_nodes(std::span<JsonValue> nodes, bool is_own) const {
@@ -110,12 +110,12 @@ struct Renamer {
 
     void rename_events(std::span<JsonValue> events) const {
         for (JsonValue& event : events) {
-            rename_targets(members_of(event, "set"));
-            rename_targets(members_of(event, "impulse"));
-            rename_resources(members_of(event, "set_resources"));
-            rename_resources(members_of(event, "impulse_resources"));
-            rename_nodes(items_of(event, "spawn"), false);
-            for (JsonValue& destroyed : items_of(event, "destroy")) {
+            rename_targets(entries_of(event, "set"));
+            rename_targets(entries_of(event, "impulse"));
+            rename_resources(entries_of(event, "set_resources"));
+            rename_resources(entries_of(event, "impulse_resources"));
+            rename_nodes(elements_of(event, "spawn"), false);
+            for (JsonValue& destroyed : elements_of(event, "destroy")) {
                 rename(destroyed.text);
             }
         }
@@ -130,30 +130,30 @@ struct Renamer {
             }
             rename(entity.key);
             rename_components(entity.value);
-            rename_changes(members_of(entity.value, "children"));
+            rename_changes(entries_of(entity.value, "children"));
         }
     }
 
     /// What a show changes in the level.
     void rename_patch(JsonValue& show, std::string_view key) const {
-        if (JsonValue* const patch = find_member(show, key)) {
-            rename_changes(members_of(*patch, "entities"));
-            rename_resources(members_of(*patch, "resources"));
-            rename_events(items_of(*patch, "events"));
+        if (JsonValue* const patch = member_in(show, key)) {
+            rename_changes(entries_of(*patch, "entities"));
+            rename_resources(entries_of(*patch, "resources"));
+            rename_events(elements_of(*patch, "events"));
         }
     }
 
     void rename_level(JsonValue& level) const {
-        rename_nodes(items_of(level, "entities"), true);
-        rename_resources(members_of(level, "resources"));
-        for (JsonMember& prefab : members_of(level, "prefabs")) {
+        rename_nodes(elements_of(level, "entities"), true);
+        rename_resources(entries_of(level, "resources"));
+        for (JsonMember& prefab : entries_of(level, "prefabs")) {
             rename_node(prefab.value, false);
         }
-        rename_events(items_of(level, "events"));
-        for (JsonValue& show : items_of(level, "shows")) {
+        rename_events(elements_of(level, "events"));
+        for (JsonValue& show : elements_of(level, "shows")) {
             rename_patch(show, "set");
             rename_patch(show, "off");
-            JsonValue* const camera = find_member(show, "camera");
+            JsonValue* const camera = member_in(show, "camera");
             if (camera != nullptr && camera->kind == JsonKind::String) {
                 rename(camera->text);
             }
