@@ -236,6 +236,73 @@ TEST_CASE(
     CHECK(glm::distance(head, concha) < 0.6f);
 }
 
+/// Breadths [cm], seen from the front, and the circumference of the neck below the jaw.
+struct NeckSize {
+    float neck = 100;
+    float head = 0;
+    float around = 0;
+};
+
+NeckSize neck_size(const HeadShape& shape) {
+    const HeadLayout& layout = head_layout(shape.shoulders);
+    const std::vector<Vec3> skin = wrap_head(shape);
+    NeckSize size;
+    for (float y = -7; y > -12; y -= 0.25f) {
+        float widest = 0;
+        for (const Vec3& p : skin) {
+            widest = std::abs(p.y - y) < 0.4f ? std::max(widest, 2 * p.x) : widest;
+        }
+        size.neck = std::min(size.neck, widest);
+    }
+    for (std::size_t v = 0; v < skin.size(); ++v) {
+        const bool skull = skin[v].y > 3 && layout.vertices[v].loops == HeadLoops::None;
+        size.head = std::max(size.head, skull ? 2 * skin[v].x : 0.0f);
+    }
+    // Where a tape lies: across the axis of the neck, which leans forward.
+    constexpr int kSteps = 72;
+    Vec3 last(0);
+    for (int i = 0; i <= kSteps; ++i) {
+        const float angle = 2 * kPi * static_cast<float>(i) / kSteps;
+        Vec3 p = {12 * std::sin(angle), 0, -1.8f + 12 * std::cos(angle)};
+        for (int step = 0; step < 60; ++step) {
+            p.y = -10 - 0.17f * (p.z + 1.8f);
+            const Vec3 in = glm::normalize(Vec3(0, p.y, -1.8f) - p);
+            p += 0.5f * head_distance(p, shape, 1) * in;
+        }
+        size.around += i > 0 ? glm::distance(p, last) : 0.0f;
+        last = p;
+    }
+    return size;
+}
+
+TEST_CASE(
+    "head: necks have the breadth of women's and men's, relative to the head, and the girth") {
+    for (const bool shoulders : {false, true}) {
+        const auto size = [&](float sex, float build) {
+            return neck_size({.sex = sex, .build = build, .shoulders = shoulders});
+        };
+        const NeckSize woman = size(-1, 0);
+        const NeckSize man = size(1, 0);
+        const NeckSize between = size(0, 0);
+        CAPTURE(woman.neck / woman.head);
+        CAPTURE(between.neck / between.head);
+        CAPTURE(man.neck / man.head);
+        CAPTURE(woman.around);
+        CAPTURE(man.around);
+        // Breadths measured on photographs from the front.
+        CHECK(woman.neck > 0.62f * woman.head);
+        CHECK(woman.neck < 0.68f * woman.head);
+        CHECK(man.neck > 0.75f * man.head);
+        CHECK(man.neck < 0.8f * man.head);
+        CHECK(between.neck > 0.68f * between.head);
+        CHECK(between.neck < 0.75f * between.head);
+        // Zhuang and Bradtmiller 2005, within a deviation [cm].
+        CHECK(std::abs(woman.around - 33.7f) < 2.5f);
+        CHECK(std::abs(man.around - 40.6f) < 3.3f);
+        CHECK(size(0, 1).neck > between.neck);
+    }
+}
+
 TEST_CASE("head: the neck ends in a planar ring that turns once around") {
     float turned = 0;
     std::vector<Vec3> ring;

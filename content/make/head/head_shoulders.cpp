@@ -23,7 +23,7 @@ constexpr std::array<Solid, 8> kSolids = {{
     // chest, from the root of the neck
     {{0, -31, -2.5f}, {0, -31, -2.5f}, {15.5f, 15, 10.5f}, {15.5f, 15, 10.5f}, 3},
     // trapezius, from the neck to the tip of the shoulder
-    {{2, -11, -5.6f}, {9, -17, -4.6f}, {3, 3.2f, 2.8f}, {3, 2.9f, 3.2f}, 3},
+    {{2, -12, -5}, {9, -17, -4.6f}, {2.8f, 3.2f, 2.6f}, {3, 2.9f, 3.2f}, 3},
     {{9, -17, -4.6f}, {16.5f, -19, -3.6f}, {3, 2.9f, 3.2f}, {2.2f, 2, 2.6f}, 2},
     // between collar bone and shoulder blade
     {{5, -20.7f, -3}, {16.5f, -21, -3.2f}, {4, 3.6f, 5}, {4, 3.5f, 4.6f}, 3},
@@ -34,7 +34,7 @@ constexpr std::array<Solid, 8> kSolids = {{
     // shoulder blade
     {{7, -23.5f, -8.6f}, {13.5f, -22, -6.6f}, {4, 5.5f, 3}, {3.4f, 4.5f, 3}, 3},
     // back of the neck
-    {{0, -11, -4.8f}, {0, -21, -8}, {3, 3, 3.4f}, {5, 5, 4.2f}, 4},
+    {{0, -12, -4.3f}, {0, -21, -8}, {2.8f, 3, 2.9f}, {5, 5, 4.2f}, 4},
 }};
 
 // Curves near the surface, onto which they are moved.
@@ -78,11 +78,8 @@ const std::vector<StrokePath>& stroke_paths() {
 /// Size of shoulders relative to neutral ones: men's are broader.
 Vec3 shoulder_size(float y, const HeadShape& shape) {
     const float low = glm::smoothstep(-10.0f, -17.0f, y);
-    const float neck = glm::smoothstep(-7.5f, -10.5f, y) * (1 - low);
-    const float breadth =
-        1 + low * (0.035f * shape.sex + 0.01f * shape.build) + 0.05f * neck * shape.sex;
-    const float depth =
-        1 + low * (0.03f * shape.sex + 0.07f * shape.build) + 0.04f * neck * shape.sex;
+    const float breadth = 1 + low * (0.035f * shape.sex + 0.01f * shape.build);
+    const float depth = 1 + low * (0.03f * shape.sex + 0.07f * shape.build);
     return {breadth, 1, depth};
 }
 

@@ -202,12 +202,24 @@ void set_one(PointOf<Four>& p, int index, const Vec3& one) {
     p.z[index] = one.z;
 }
 
-/// Maps `p` to a neutral head. Women's faces are smaller below the brow, increasingly downwards;
-/// heavy ones are broader.
+/// How much of `p` is neck: 0 above the line from the angle of the jaw to the chin, 1 some
+/// centimeters below it, and with shoulders 0 again where they begin.
+float on_neck(const Vec3& p, const HeadShape& shape) {
+    const float below_jaw = -0.905f * (p.y + 4.6f) - 0.425f * (p.z - 2.2f);
+    const float ends = shape.shoulders ? glm::smoothstep(-12.0f, -16.5f, p.y) : 0.0f;
+    return glm::smoothstep(0.0f, 3.0f, below_jaw) * (1 - ends);
+}
+
+/// Maps `p` to a neutral head. Women's faces are smaller below the brow, increasingly downwards,
+/// their necks slender; heavy ones are broader.
 Vec3 to_neutral_head(const Vec3& point, const HeadShape& shape) {
+    constexpr float kNeckAxis = -1.8f;  // z [cm]
     const float low = glm::smoothstep(6.0f, -7.0f, point.y);
+    const float neck = on_neck(point, shape);
     Vec3 p = {std::abs(point.x), point.y, point.z};
     p.x /= 1 + 0.03f * shape.sex * low + 0.05f * shape.build * low;
+    p.x /= 1 + (shape.sex > 0 ? 0.035f : 0.06f) * shape.sex * neck;
+    p.z = kNeckAxis + (p.z - kNeckAxis) / (1 + 0.1f * shape.sex * neck);
     p.y /= 1 + 0.025f * shape.sex * low;
     return shape.shoulders ? to_neutral_shoulders(p, shape) : p;
 }
