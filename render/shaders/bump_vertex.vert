@@ -52,7 +52,7 @@ void main() {
 #endif
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
     t *= inversesqrt(max(dot(t, t), 1e-30));
-    LitPoint p = lit_point(MeshPoint(position_ws, n, color.rgb, instance.xy, instance.z));
+    LitPoint p = lit_point(MeshPoint(position_ws, n, color, instance.xy, instance.z));
     float side = dot(n, p.reflector.normal) < 0.0 ? -1.0 : 1.0;
     mat3 world_from_ts = side * mat3(t, cross(n, t) * (tangent_ms.w * vertex_side()), n);
     for (int k = 0; k < SINGLE_LIGHTS; ++k) {

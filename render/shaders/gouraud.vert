@@ -20,7 +20,7 @@ invariant gl_Position;  // the depth must equal that of depth_first.frag
 void main() {
     vec3 position_ws = vertex_ws();
     gl_Position = view.clip_from_world * vec4(position_ws, 1.0);
-    Reflected light = light_at(MeshPoint(position_ws, vertex_normal_ws(), color.rgb, instance.xy, instance.z));
+    Reflected light = light_at(MeshPoint(position_ws, vertex_normal_ws(), color, instance.xy, instance.z));
     diffuse = light.diffuse;
     specular = light.specular;
     uv = vec4(first_uv, second_uv);

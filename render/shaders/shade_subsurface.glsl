@@ -12,9 +12,8 @@ void prepare_subsurface(inout Reflector r, SurfaceSample s) {
     vec4 specular = block_texel(s.material, kSubsurfaceBlock, 0);
     vec4 diffusion = block_texel(s.material, kSubsurfaceBlock, kDiffusionTexel);
     float gloss = max(diffusion.w, kMinRoughness);
-    // Where less than a quarter of the surroundings is open, as in a nostril, lamps are hidden as well; also by the
-    // occlusion map, which shares the channel of the G-buffer.
-    float open = min(4.0 * s.occlusion, 1.0);
+    // In a cavity where less than a quarter of the surroundings is open, as in a nostril, lamps are hidden as well.
+    float open = min(4.0 * (1.0 - s.metalness), 1.0);
     vec2 fit = mix(lobe_albedo(r.n_v, s.roughness), lobe_albedo(r.n_v, diffusion.w), specular.w);
     r.specular_0 = specular.rgb * open;
     r.specular_90 = vec3(open);

@@ -324,37 +324,79 @@ TEST_CASE("detail: its slopes add to those of the normal map" * technique("skin.
     CHECK(glm::distance(half, glm::normalize(Vec3(0.25f, 0.5f / 3, 1))) < 0.01f);
 }
 
+/// A square of skin before the camera, lit by a lamp or by uniform surroundings.
+struct CavityScene {
+    float alpha = 1;      ///< of vertex colors: 0.1 or more where skin is open
+    float occlusion = 1;  ///< of the occlusion map
+    Vec3 base_color = Vec3(0);
+    bool lamp = true;
+    ShadingRate shading = ShadingRate::Pixel;
+};
+
+float seen(const CavityScene& shown) {
+    Scene scene;
+    MeshData mesh = make_square();
+    mesh.colors.assign(4, Vec4(1, 1, 1, shown.alpha));
+    Material material = {
+        .shading = ShadingModel::Subsurface,
+        .base_color = Vec4(shown.base_color, 1),
+        .roughness = 0.5f,
+        .specular = Vec3(0.05f)};
+    if (shown.occlusion < 1) {
+        const auto open = static_cast<std::uint8_t>(std::lround(255 * shown.occlusion));
+        material.occlusion_texture.image = scene.add(ImageData{
+            .name = "occlusion",
+            .width = 1,
+            .height = 1,
+            .srgb = false,
+            .pixels = {open, open, open, 255}});
+    }
+    scene.place(scene.add(mesh), scene.add(material), at({0, 0, 0}));
+    scene.world.insert_resource(Rendering{.shading = shown.shading});
+    if (shown.lamp) {
+        scene.shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0, 0, -1}));
+    } else {
+        scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
+    }
+    return rgb_at(scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17)), 8, 8).x;
+}
+
 TEST_CASE(
-    "skin: a cavity is lit by its share of the surroundings, and a deep one mirrors no lamp") {
-    // The alpha of vertex colors, 0.1 or more where skin is open.
-    const auto seen = [](float alpha, const Vec3& base_color, bool lamp) {
-        Scene scene;
-        MeshData mesh = make_square();
-        mesh.colors.assign(4, Vec4(1, 1, 1, alpha));
-        const Material material = {
-            .shading = ShadingModel::Subsurface,
-            .base_color = Vec4(base_color, 1),
-            .roughness = 0.5f,
-            .specular = Vec3(0.05f)};
-        scene.place(scene.add(mesh), scene.add(material), at({0, 0, 0}));
-        if (lamp) {
-            scene.shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0, 0, -1}));
-        } else {
-            scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
-        }
-        return rgb_at(scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 17, 17)), 8, 8).x;
-    };
-    const float open = seen(1, Vec3(0), true);
-    CHECK(open > 0.05f);
-    CHECK(double(seen(0.1f, Vec3(0), true)) == near(double(open)).epsilon(0.01));
+    "skin: a cavity is lit by its share of the surroundings, and a deep one mirrors no lamp, at "
+    "every shading rate") {
+    for (const ShadingRate shading :
+         {ShadingRate::Pixel, ShadingRate::Vertex, ShadingRate::Quadratic, ShadingRate::Taylor,
+          ShadingRate::BlinnMap}) {
+        CAPTURE(static_cast<int>(shading));
+        const auto mirrored = [&](float alpha) {
+            return static_cast<double>(seen({.alpha = alpha, .shading = shading}));
+        };
+        const auto around = [&](float alpha) {
+            return static_cast<double>(seen(
+                {.alpha = alpha, .base_color = Vec3(0.8f), .lamp = false, .shading = shading}));
+        };
+        const double open = mirrored(1);
+        CHECK(open > 1e-3);
+        CHECK(mirrored(0.1f) == near(open).epsilon(0.01));
+        CHECK(mirrored(0.04f) == near(open).epsilon(0.01));  // lamps reach it
+        CHECK(mirrored(0.0125f) == near(0.5 * open).epsilon(0.03));
+        CHECK(mirrored(0) == 0);
+        CHECK(around(0.1f) == near(around(1)).epsilon(0.01));
+        CHECK(around(0.05f) < 0.52 * around(1));
+        CHECK(around(0) < 1e-3 * around(1));
+    }
+}
+
+TEST_CASE("skin: an occlusion map darkens the surroundings, not what skin mirrors of lamps") {
+    const auto open = static_cast<double>(seen({}));
+    for (const float occlusion : {0.5f, 0.1f, 0.0f}) {
+        CHECK(static_cast<double>(seen({.occlusion = occlusion})) == near(open).epsilon(0.01));
+    }
     CHECK(
-        double(seen(0.04f, Vec3(0), true)) == near(double(open)).epsilon(0.01));  // lamps reach it
-    CHECK(double(seen(0.0125f, Vec3(0), true)) == near(0.5 * double(open)).epsilon(0.03));
-    CHECK(seen(0, Vec3(0), true) == 0);
-    const float around = seen(1, Vec3(0.8f), false);
-    CHECK(double(seen(0.1f, Vec3(0.8f), false)) == near(double(around)).epsilon(0.01));
-    CHECK(seen(0.05f, Vec3(0.8f), false) < 0.52f * around);
-    CHECK(seen(0, Vec3(0.8f), false) < 1e-3f * around);
+        seen({.occlusion = 0.2f, .base_color = Vec3(0.8f), .lamp = false})
+        < 0.25f * seen({.base_color = Vec3(0.8f), .lamp = false}));
+    // Both at once.
+    CHECK(seen({.alpha = 0, .occlusion = 0.5f}) == 0);
 }
 
 }  // namespace limn::test::skin_models_test

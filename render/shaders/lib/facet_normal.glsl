@@ -9,6 +9,6 @@ layout(location = 9) flat in vec3 facet_normals[7];
 
 // Light that the pixel reflects with this normal, which need not be unit.
 vec4 radiance_by(vec3 normal) {
-    Reflected light = light_at(MeshPoint(position_ws, normal, vertex_color.rgb, material_and_flags, object));
+    Reflected light = light_at(MeshPoint(position_ws, normal, vertex_color, material_and_flags, object));
     return facet_radiance(mat2x3(light.diffuse, light.specular));
 }

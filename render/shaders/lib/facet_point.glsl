@@ -23,6 +23,6 @@ MeshPoint mesh_point(vec2 at) {
     return MeshPoint(
         w.x * corner_ws[0] + w.y * corner_ws[1] + w.z * corner_ws[2],
         n2 > 1e-12 ? n * inversesqrt(n2) : face_normal_ws(),
-        w.x * corner_color[0].rgb + w.y * corner_color[1].rgb + w.z * corner_color[2].rgb,
+        w.x * corner_color[0] + w.y * corner_color[1] + w.z * corner_color[2],
         corner_instance[0].xy, corner_instance[0].z);
 }

@@ -7,7 +7,8 @@
 //     z   occlusion 8, roughness 10, metalness 7, shading model 5,  high bits of albedo b 2
 //     w   emission, shared exponent       9 + 9 + 9 + 5
 //
-// For Unlit, albedo is the mirrored fraction and its color is in emission. Wrinkled skin that needs its smooth normal
+// For Unlit, albedo is the mirrored fraction and its color is in emission. For Subsurface, which is no metal, metalness
+// is how closed the cavity is in which it lies (set_cavity). Wrinkled skin that needs its smooth normal
 // when lit (SMOOTH_NORMALS) emits nothing: w is
 //
 //     w   smooth normal, octahedral 11 + 11,  weight of the wrinkles 9,  fades 1
@@ -79,7 +80,7 @@ struct SurfaceSample {
     vec3 emission;    // radiance, 0 .. 65408
     float occlusion;  // 0 occluded .. 1 open
     float roughness;  // perceptual, 0 .. 1
-    float metalness;  // 0 .. 1
+    float metalness;  // 0 .. 1; of Subsurface: of a cavity, 0 open .. 1 closed
     uint material;    // index; not in pack_surface()
     uint model;       // kModel*
 #ifdef SMOOTH_NORMALS
@@ -126,6 +127,19 @@ void set_plain(inout SurfaceSample s) {
 #ifdef KEY_SHADOWS
     s.key_visibility = vec2(1.0);
 #endif
+}
+
+// How open a cavity of skin is, for shading model Subsurface, from the alpha of its vertices: below kCavityAlpha
+// (kSkinCavity of heads), where there are no pores, it is the share of the surroundings that light the surface. So an
+// opaque mesh of that model needs an alpha of 1, or none. Unlike what an occlusion map darkens, closed cavities mirror
+// no lamps.
+void set_cavity(inout SurfaceSample s, float alpha) {
+    const float kCavityAlpha = 0.1;
+    if (s.model == kModelSubsurface) {
+        float open = clamp(alpha / kCavityAlpha, 0.0, 1.0);
+        s.occlusion *= open;
+        s.metalness = 1.0 - open;
+    }
 }
 
 // Whether surfaces have a direction of strands and emit nothing.

@@ -7,12 +7,11 @@ const float kLastLevel = 16.0;  // or the last one
 struct MeshPoint {
     vec3 position_ws;
     vec3 normal_ws;           // unit
-    vec3 color;               // of the vertex
+    vec4 color;               // of the vertex
     uvec2 material_and_flags;
     uint object;
 };
 
-// Cavities of skin are lit as if they were open: the points have no alpha.
 SurfaceSample point_surface(MeshPoint p) {
     vec4 base = material_texel(p.material_and_flags.x, 0);
     vec4 factors = material_texel(p.material_and_flags.x, 2);
@@ -20,7 +19,7 @@ SurfaceSample point_surface(MeshPoint p) {
     s.normal_ws = p.normal_ws;
     s.albedo = base.rgb;
 #ifdef VERTEX_COLOR
-    s.albedo *= max(p.color, 0.0);
+    s.albedo *= max(p.color.rgb, 0.0);
 #endif
     s.emission = vec3(0.0);
     s.occlusion = 1.0;
@@ -33,6 +32,11 @@ SurfaceSample point_surface(MeshPoint p) {
     vec2 mean = textureLod(material_maps[METAL_ROUGH_MAP], vec3(0.5, 0.5, layer), kLastLevel).gb;
     s.roughness *= mean.x;
     s.metalness *= mean.y;
+#endif
+#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
+    set_cavity(s, p.color.a);
+#else
+    set_cavity(s, 1.0);
 #endif
 #ifdef DOUBLE_SIDED
     s.normal_ws *= dot(s.normal_ws, view.camera_ws.xyz - p.position_ws) < 0.0 ? -1.0 : 1.0;

@@ -39,5 +39,5 @@ LitPoint put_vertex() {
 #ifdef MAP_LAYERS
     map_layers = map_layers_of(instance.x);
 #endif
-    return lit_point(MeshPoint(position_ws, vertex_normal_ws(), color.rgb, instance.xy, instance.z));
+    return lit_point(MeshPoint(position_ws, vertex_normal_ws(), color, instance.xy, instance.z));
 }

@@ -344,16 +344,6 @@ void shadow_bumps(inout SurfaceSample s) {
 }
 #endif
 
-#if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
-// How open a cavity of skin is, for shading model Subsurface, from the alpha of its vertices: below kCavityAlpha
-// (kSkinCavity of heads), where there are no pores, it is the share of the surroundings that light the surface. So an
-// opaque mesh of that model needs an alpha of 1, or none.
-float skin_cavity(float alpha) {
-    const float kCavityAlpha = 0.1;
-    return clamp(alpha / kCavityAlpha, 0.0, 1.0);
-}
-#endif
-
 SurfaceSample surface_sample(vec3 albedo) {
     vec4 factors = material_texel(2);
     SurfaceSample s;
@@ -387,7 +377,9 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.roughness = has_strands(s.model) ? s.roughness : rougher(s.roughness, 0.5 * (spread.x + spread.y));
 #endif
 #if defined(VERTEX_COLOR) && !defined(ALPHA_MASK) && !defined(DRESSED)
-    s.occlusion *= s.model == kModelSubsurface ? skin_cavity(vertex_color.a) : 1.0;
+    set_cavity(s, vertex_color.a);
+#else
+    set_cavity(s, 1.0);
 #endif
     set_plain(s);
 #ifdef STRANDS
