@@ -55,18 +55,18 @@ void add_lashes(HeadPart& part, Random& random, bool upper) {
         const float lean = 0.16f * (1 - static_cast<float>(i % 3));
         const float fan = 0.55f * std::cos(turn) + lean + 0.14f * (random.uniform() - 0.5f);
         const float arch = std::sin(turn);
-        const float length = (upper ? 0.62f + 0.28f * arch : 0.34f + 0.16f * arch)
+        const float length = (upper ? 0.52f + 0.28f * arch : 0.3f + 0.14f * arch)
                              * (0.8f + 0.35f * random.uniform());
         const float curl = upper ? 1.0f : -0.8f;
         Strand strand;
         strand.root = root - 0.02f * out;
-        const float rise = 0.85f + 0.4f * random.uniform();
+        const float rise = 0.5f + 0.4f * random.uniform();
         const Vec3 forward = glm::normalize(0.6f * out + Vec3(0.8f * fan, -0.3f * curl, 0.7f));
-        const Vec3 up = glm::normalize(0.5f * out + Vec3(1.4f * fan, rise * curl, 0.3f));
+        const Vec3 up = glm::normalize(0.5f * out + Vec3(1.1f * fan, rise * curl, 0.5f));
         strand.control = strand.root + 0.55f * length * forward;
         strand.tip = strand.control + 0.6f * length * up;
         strand.across = glm::normalize(beside - root);
-        strand.width = upper ? 0.016f : 0.009f;
+        strand.width = upper ? 0.013f : 0.008f;
         strand.point.loops = HeadLoops::Eye;
         strand.point.loop = kLidLoop;
         strand.point.angle = angle;

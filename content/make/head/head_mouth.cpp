@@ -88,7 +88,7 @@ void append(
 /// Share of the surroundings that a point of a tooth sees in an open mouth: the front teeth most,
 /// at their edges; cheeks hide the molars, lips the roots.
 float tooth_opening(const Jaw& jaw, const Vec3& p, float root) {
-    const float back = glm::smoothstep(0.3f, 3.2f, jaw.front - p.z);
+    const float back = glm::smoothstep(0.2f, 2.4f, jaw.front - p.z);
     return glm::mix(0.95f, 0.08f, back) * glm::mix(1.0f, 0.55f, glm::smoothstep(0.3f, 1.0f, root));
 }
 

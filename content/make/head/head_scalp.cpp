@@ -118,7 +118,22 @@ void append_card(HeadPart& part, const Card& card, const HeadShape& shape) {
     append_grid(part.mesh, card.rows, 2, false);
 }
 
-/// Wide cards that lie on the scalp, so that hair, not skin, is visible between locks.
+/// Whether hair covers the scalp along both edges of a card.
+bool is_covered(const Card& card, const HeadShape& shape) {
+    const Vec3 across = glm::normalize(glm::cross(card.flow, card.out));
+    for (const float along : {0.0f, 0.5f, 1.0f}) {
+        for (const float edge : {-0.5f, 0.5f}) {
+            const Vec3 p = card.root + along * card.length * card.flow + edge * card.width * across;
+            if (scalp_hair_cover(to_scalp(p, shape)) < 0.8f) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// Wide cards that lie on the scalp, so that hair, not skin, is visible between locks; narrow ones
+/// along the hairline, where the corners of wide ones would be seen.
 void append_undercoat(HeadPart& part, const HeadShape& shape) {
     constexpr int kCards = 700;
     for (int i = 0; i < kCards; ++i) {
@@ -129,10 +144,14 @@ void append_undercoat(HeadPart& part, const HeadShape& shape) {
         }
         card.out = glm::normalize(head_gradient(card.root, shape, 0));
         card.flow = hair_flow(card.root, card.out);
-        const Vec3 tip = card.root + 2.4f * card.flow;
-        card.length = scalp_hair_cover(to_scalp(tip, shape)) < 0.8f ? 0.8f : 2.4f;
+        card.length = 2.4f;
         card.width = 2.0f;
         card.taper = 0.3f;
+        if (!is_covered(card, shape)) {
+            card.length = 0.9f;
+            card.width = 0.5f;
+            card.taper = 0.8f;
+        }
         card.lift = 0.06f;
         card.strand = 0.37f * static_cast<float>(i);
         card.shade = 0.75f;

@@ -1,5 +1,6 @@
 #include "content/make/patterns/patterns.h"
 
+#include "content/make/head/complexion_pattern.h"
 #include "content/make/head/face_fold_pattern.h"
 #include "content/make/head/head_furrow_pattern.h"
 #include "content/make/head/strain_fold_pattern.h"
@@ -402,6 +403,8 @@ std::span<const PatternKind> pattern_kinds() {
             "brushed_metal", "metal with fine streaks along u"),
         pattern_kind<BubblePattern, make_bubble>("bubble", "a flipbook of air bubbles in water"),
         pattern_kind<CheckerPattern, make_checker>("checker", "two colors in squares, polished"),
+        pattern_kind<ComplexionPattern, make_complexion>(
+            "complexion", "blotches, freckles, age spots and stubble of the skin of a head"),
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<ConfettiPattern, make_confetti>(
             "confetti", "a flipbook of cut paper in bright colors"),
