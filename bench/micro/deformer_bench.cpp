@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/deformers.h"
 #include "systems/animation/deformer_kernels.h"
+#include "systems/animation/patch_binding.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/skin_kernels.h"
 #include "systems/animation/surface_faces.h"
@@ -105,7 +106,8 @@ void muscles_and_lattice(benchmark::State& state) {
 void patches_follow(benchmark::State& state) {
     const Face& at_rest = face();
     const std::vector<SurfaceAnchor> anchors = bind_to_patches(
-        at_rest.positions, at_rest.normals, at_rest.tangents, at_rest.surface, at_rest.corners, 1);
+        {at_rest.positions, at_rest.normals, at_rest.tangents}, at_rest.surface, at_rest.corners,
+        1);
     std::vector<Vec4> patches;
     make_patches(at_rest.surface, at_rest.corners, patches);
     Face moved = at_rest;
@@ -121,7 +123,8 @@ template <auto move>
 void patches_move(benchmark::State& state) {
     const Face& at_rest = face();
     const std::vector<SurfaceAnchor> anchors = bind_to_patches(
-        at_rest.positions, at_rest.normals, at_rest.tangents, at_rest.surface, at_rest.corners, 1);
+        {at_rest.positions, at_rest.normals, at_rest.tangents}, at_rest.surface, at_rest.corners,
+        1);
     const std::vector<std::uint32_t> order = order_by_patch(anchors);
     std::vector<Vec4> patches;
     make_patches(at_rest.surface, at_rest.corners, patches);

@@ -45,7 +45,8 @@ struct Lists {
     int influence_end;
     int offset;
     int offset_end;
-    int anchor;  // on the patches of a surface
+    int anchors;  // on the patches of a surface
+    int anchor;   // the first of the vertex
 };
 
 vec3 unpack_turn(uint a, uint b, bool second) {
@@ -135,27 +136,36 @@ Vertex apply_controls(Vertex v, int first) {
     return Vertex(deform_point(first, v.position), unit_or(turned, normal), tangent);
 }
 
-Vertex follow_surface(Vertex v, int texel, int patches) {
-    uvec4 a = texelFetch(rest, texel);
-    if (a.x == kNoPatch) {
-        return v;
+// `texel`: of the vertex's first anchor; those of the mesh begin at `anchors`.
+Vertex follow_surface(Vertex v, int anchors, int texel, int patches) {
+    Vertex moved = Vertex(vec3(0.0), vec3(0.0), vec3(0.0));
+    float stays = 1.0;
+    bool ends = texelFetch(rest, texel).x == kNoPatch;
+    while (!ends) {
+        uvec4 a = texelFetch(rest, texel);
+        vec4 b = uintBitsToFloat(texelFetch(rest, texel + 1));
+        vec4 c = uintBitsToFloat(texelFetch(rest, texel + 2));
+        uvec4 d = texelFetch(rest, texel + 3);
+        vec3 offset = vec3(uintBitsToFloat(a.w), b.xy);
+        PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
+        mat3 axes = patch_axes(at, offset.z);
+        float share = uintBitsToFloat(d.x);
+        stays -= share;
+        moved.position += share * point_on_patch(at, offset);
+        moved.normal += share * unit_or(patch_normal(axes, vec3(b.zw, c.x)), v.normal);
+        moved.tangent += share * unit_or(axes * c.yzw, v.tangent);
+        ends = d.y == 0u;
+        texel = anchors + int(kOnPatchTexels * d.y);
     }
-    vec4 b = uintBitsToFloat(texelFetch(rest, texel + 1));
-    vec4 c = uintBitsToFloat(texelFetch(rest, texel + 2));
-    vec3 offset = vec3(uintBitsToFloat(a.w), b.xy);
-    PatchPoint at = evaluate_patch(patches + kPatchTexels * int(a.x & 0xffffffu), uintBitsToFloat(a.y), uintBitsToFloat(a.z));
-    mat3 axes = patch_axes(at, offset.z);
-    vec3 normal = patch_normal(axes, vec3(b.zw, c.x));
-    float share = float(a.x >> 24) / 255.0;  // of the motion
     return Vertex(
-        mix(v.position, point_on_patch(at, offset), share),
-        unit_or(mix(v.normal, unit_or(normal, v.normal), share), v.normal),
-        unit_or(mix(v.tangent, unit_or(axes * c.yzw, v.tangent), share), v.tangent));
+        stays * v.position + moved.position,
+        unit_or(stays * v.normal + moved.normal, v.normal),
+        unit_or(stays * v.tangent + moved.tangent, v.tangent));
 }
 
 Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight, uint first_control, uint patches) {
     if ((kFlags & kDeformPatches) != 0u) {
-        v = follow_surface(v, lists.anchor, int(patches));
+        v = follow_surface(v, lists.anchors, lists.anchor, int(patches));
     }
     if ((kFlags & kDeformMorphs) != 0u) {
         v = add_morphs(v, lists, int(first_weight));
@@ -199,13 +209,15 @@ void main() {
     uvec4 b = texelFetch(rest, texel + 1);
     uvec4 c = texelFetch(rest, texel + 2);
     Vertex v = Vertex(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz));
+    int anchors = int(job0.x + kRestTexels * (job0.y + 1u));
     Lists lists = Lists(
         int(job0.x),
         int(a.w),
         int(texelFetch(rest, texel + int(kRestTexels)).w),
         int(b.w),
         int(texelFetch(rest, texel + int(kRestTexels) + 1).w),
-        int(job0.x + kRestTexels * (job0.y + 1u) + kOnPatchTexels * number));
+        anchors,
+        anchors + int(kOnPatchTexels * number));
     if ((kFlags & kDeformPrevious) != 0u) {
         vec3 p = deformed(v, lists, job1.y, job1.w, job2.y, job2.w).position;
         previous[3u * vertex] = p.x;

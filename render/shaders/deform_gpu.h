@@ -2,8 +2,8 @@
 //
 // A mesh in bind pose is a block of texels: three per vertex - position and its first influence, normal and its first
 // offset, tangent - and a sentinel vertex, which ends the lists of the last; for a mesh on the patches of a surface
-// three more per vertex - patch, u, v, offset, normal, tangent (surface_anchors.h); then influences, two per texel -
-// joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
+// four more per anchor - patch, u, v, offset, normal, tangent, share, next (surface_anchors.h); then influences, two per
+// texel - joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
 // 16-bit fractions of kMaxUnitDifference. Indices into these lists count texels from the beginning of the block.
 // With kDeformOffsets influences are three texels each, in the space of the joint: position and weight, normal and
 // joint, tangent.
@@ -15,7 +15,7 @@ namespace limn::layout {
 #endif
 
 const uint kRestTexels = 3u;    // per vertex
-const uint kOnPatchTexels = 3u;   // per vertex on patches
+const uint kOnPatchTexels = 4u;  // per anchor on patches
 const uint kOffsetTexels = 2u;  // per offset of a morph target
 const uint kJointOffsetTexels = 3u;  // per influence, with kDeformOffsets
 const float kMaxUnitDifference = 2.0; // largest difference of two unit vectors, by component

@@ -128,17 +128,14 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
 Texels anchor_texels(std::span<const SurfaceAnchor> anchors) {
     Texels texels;
     for (const SurfaceAnchor& at : anchors) {
-        // The share in the upper bits; that of kNoPatch, all ones, is not used.
-        const std::uint32_t share = static_cast<std::uint32_t>(std::lround(255.0f * at.share))
-                                    << 24;
-        const std::uint32_t patch = at.patch == kNoPatch ? kNoPatch : at.patch | share;
-        texels.push_back({patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
+        texels.push_back({at.patch, bits_of(at.u), bits_of(at.v), bits_of(at.offset.x)});
         texels.push_back(
             {bits_of(at.offset.y), bits_of(at.offset.z), bits_of(at.normal.x),
              bits_of(at.normal.y)});
         texels.push_back(
             {bits_of(at.normal.z), bits_of(at.tangent.x), bits_of(at.tangent.y),
              bits_of(at.tangent.z)});
+        texels.push_back({bits_of(at.share), at.next, 0, 0});
     }
     return texels;
 }
@@ -198,7 +195,7 @@ RestMesh RestPool::upload(
         skin != nullptr ? joint_offset_texels(mesh, *skin, first_influence)
                         : influence_texels(mesh.skin, mesh.positions.size(), first_influence);
     const Texels offsets = offset_texels(mesh, first_offset);
-    made.has_anchors = anchors.size() == mesh.positions.size();
+    made.has_anchors = !anchors.empty() && anchors.size() >= mesh.positions.size();
     const Texels anchored = made.has_anchors ? anchor_texels(anchors) : Texels{};
     const std::size_t anchors_at = layout::kRestTexels * (mesh.positions.size() + 1);
     const std::size_t influences_at = anchors_at + anchored.size();

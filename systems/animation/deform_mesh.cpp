@@ -44,7 +44,7 @@ bool deform_positions(
     thread_local Memory memory;
     positions = mesh.positions;
     const SkinnedVertices moved = {positions, {}, {}};
-    if (surface.anchors.size() == positions.size()) {
+    if (!surface.anchors.empty() && surface.anchors.size() >= positions.size()) {
         move_by_patches(surface, positions);
     }
     find_weights(morphs, deformed.first_morph, memory.weights);

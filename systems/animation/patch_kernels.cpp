@@ -3,8 +3,6 @@
 #include "ecs/base/check.h"
 #include "systems/animation/surface_patches.h"
 
-#include <glm/common.hpp>
-
 #include <algorithm>
 #include <cstddef>
 
@@ -69,6 +67,19 @@ HWY_INLINE V3 cross(const V3& a, const V3& b) {
 struct Barycentric {
     V u, v, w;
 };
+
+/// Leaves of each position the share that does not move.
+void scale_by_rest(std::span<const SurfaceAnchor> anchors, std::span<Vec3> positions) {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        if (anchors[v].patch != kNoPatch) {
+            float stays = 1.0f - anchors[v].share;
+            for (std::size_t a = anchors[v].next; a != 0; a = anchors[a].next) {
+                stays -= anchors[a].share;
+            }
+            positions[v] *= stays;
+        }
+    }
+}
 
 /// One step of de Casteljau.
 HWY_INLINE V3 mix(const Barycentric& at, const V3& a, const V3& b, const V3& c) {
@@ -178,29 +189,25 @@ HWY_INLINE bool move_lanes(const Vec4* patch, Lanes& lanes) {
     return true;
 }
 
-/// Vertices of one patch, at most as many as there are lanes.
-HWY_INLINE void move_vertices(
-    const SurfaceShape& shape, std::span<const std::uint32_t> vertices, std::span<Vec3> positions) {
+/// Adds what anchors of one patch, at most as many as there are lanes, share of the motion.
+HWY_INLINE void add_moved(
+    const SurfaceShape& shape, std::span<const std::uint32_t> which, std::span<Vec3> positions) {
     Lanes lanes;
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // spare lanes repeat the last one
-        const SurfaceAnchor& anchor = shape.anchors[vertices[std::min(i, vertices.size() - 1)]];
+        const SurfaceAnchor& anchor = shape.anchors[which[std::min(i, which.size() - 1)]];
         lanes.u[i] = anchor.u;
         lanes.v[i] = anchor.v;
         lanes.x[i] = anchor.offset.x;
         lanes.y[i] = anchor.offset.y;
         lanes.z[i] = anchor.offset.z;
     }
-    const std::size_t patch = shape.anchors[vertices[0]].patch;
+    const std::size_t patch = shape.anchors[which[0]].patch;
     const bool moved = move_lanes(&shape.patches[patch * kPatchTexels], lanes);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const std::uint32_t v = vertices[i];
-        if (moved) {
-            positions[v] = glm::mix(
-                positions[v], Vec3(lanes.x[i], lanes.y[i], lanes.z[i]), shape.anchors[v].share);
-        } else {
-            follow_patches(
-                shape.anchors.subspan(v, 1), shape.patches, positions.subspan(v, 1), {}, {});
-        }
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        const SurfaceAnchor& anchor = shape.anchors[which[i]];
+        positions[anchor.vertex] += anchor.share
+                                    * (moved ? Vec3(lanes.x[i], lanes.y[i], lanes.z[i])
+                                             : anchored_point(anchor, shape.patches));
     }
 }
 
@@ -208,6 +215,7 @@ HWY_INLINE void move_vertices(
 
 void move_by_patches_vector(const SurfaceShape& shape, std::span<Vec3> positions) {
     const std::span<const std::uint32_t> order = shape.order;
+    scale_by_rest(shape.anchors, positions);
     for (std::size_t i = 0; i < order.size();) {
         const std::uint32_t patch = shape.anchors[order[i]].patch;
         std::size_t count = 1;
@@ -215,7 +223,7 @@ void move_by_patches_vector(const SurfaceShape& shape, std::span<Vec3> positions
                && shape.anchors[order[i + count]].patch == patch) {
             ++count;
         }
-        move_vertices(shape, order.subspan(i, count), positions);
+        add_moved(shape, order.subspan(i, count), positions);
         i += count;
     }
 }
@@ -232,9 +240,9 @@ HWY_EXPORT(move_by_patches_vector);
 
 std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors) {
     std::vector<std::uint32_t> order;
-    for (std::uint32_t v = 0; v < anchors.size(); ++v) {
-        if (anchors[v].patch != kNoPatch) {
-            order.push_back(v);
+    for (std::uint32_t i = 0; i < anchors.size(); ++i) {
+        if (anchors[i].patch != kNoPatch) {
+            order.push_back(i);
         }
     }
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -244,7 +252,7 @@ std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors
 }
 
 void move_by_patches(const SurfaceShape& shape, std::span<Vec3> positions) {
-    LIMN_CHECK(shape.anchors.size() == positions.size());
+    LIMN_CHECK(shape.anchors.size() >= positions.size());
     HWY_DYNAMIC_DISPATCH(move_by_patches_vector)(shape, positions);
 }
 

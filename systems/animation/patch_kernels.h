@@ -10,9 +10,9 @@
 namespace limn {
 
 // Positions of a mesh on patches (surface_patches.h), for code that needs the deformed surface.
-// SIMD moves many vertices of one patch at once, so they are visited patch by patch.
+// SIMD moves many vertices of one patch at once, so their anchors are visited patch by patch.
 
-/// Vertices that are bound, patch by patch.
+/// Anchors that have a patch, patch by patch.
 [[nodiscard]] std::vector<std::uint32_t> order_by_patch(std::span<const SurfaceAnchor> anchors);
 
 /// Positions of the vertices that are bound; the others stay. Both agree within 1e-6 of the size of

@@ -5,6 +5,7 @@
 #include "ecs/base/text.h"
 #include "systems/animation/clip_jumps.h"
 #include "systems/animation/mesh_source.h"
+#include "systems/animation/patch_binding.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_faces.h"
 #include "systems/animation/surface_patches.h"
@@ -77,8 +78,15 @@ void note_beyond(
     Bounds beyond;
     std::size_t less = 0;
     std::size_t still = 0;
-    for (std::size_t v = 0; v < anchors.size(); ++v) {
-        if (anchors[v].patch == kNoPatch || anchors[v].share < 1.0f) {
+    for (std::size_t v = 0; v < bound.positions.size(); ++v) {
+        float follows = 0.0f;
+        for (std::size_t a = v; anchors[v].patch != kNoPatch; a = anchors[a].next) {
+            follows += anchors[a].share;
+            if (anchors[a].next == 0) {
+                break;
+            }
+        }
+        if (follows < 0.999f) {
             grow(beyond, bound.positions[v]);
             ++(anchors[v].patch == kNoPatch ? still : less);
         }
@@ -91,7 +99,7 @@ void note_beyond(
         log_debug(
             "surface_binding of mesh {}: of {} vertices, {} beside the surface {} or far from it "
             "follow less, {} do not move; these are between {} and {}",
-            bound.name, anchors.size(), less, surface.name, still, rounded(beyond.min),
+            bound.name, bound.positions.size(), less, surface.name, still, rounded(beyond.min),
             rounded(beyond.max));
     }
 }
@@ -178,8 +186,8 @@ class Binder {
             chart = {bound.uvs, corner_uvs};
         }
         std::vector<SurfaceAnchor> anchors = bind_to_patches(
-            bound.positions, bound.normals, bound.tangents, surface.positions, faces.corners,
-            std::isfinite(max_distance) ? max_distance : 0.0f, chart);
+            {bound.positions, bound.normals, bound.tangents, bound.indices}, surface.positions,
+            faces.corners, std::isfinite(max_distance) ? max_distance : 0.0f, chart);
         state.largest_offset = 0.0f;
         for (const SurfaceAnchor& anchor : anchors) {
             state.largest_offset = std::max(state.largest_offset, glm::length(anchor.offset));

@@ -1,9 +1,7 @@
 #include "systems/animation/surface_patches.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/jobs.h"
 #include "ecs/base/text.h"
-#include "ecs/base/triangle.h"
 #include "systems/animation/patch_normals.h"
 
 #include <glm/common.hpp>
@@ -14,382 +12,19 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 
-// Techniques: face.bids-project, face.bids-rebuild, face.bids-surface
+// Techniques: face.bids-rebuild, face.bids-surface
 
 namespace limn {
 namespace {
 
-constexpr std::size_t kPatchGrain = 64;  ///< points per task
-constexpr std::size_t kCandidates = 24;  ///< patches that are tried for a point
-constexpr std::size_t kNeighbors = 8;    ///< likewise with a chart
-constexpr int kSamples = 8;              ///< per edge of a patch, for the start of Newton's method
-constexpr int kSteps = 20;               ///< of Newton's method
-constexpr float kInside = 1e-4f;         ///< by which (u, v) may leave the triangle
-constexpr float kMinPatchShape = 1e-6f;  ///< area of a triangle over its longest edge squared
+constexpr float kMinPatchShape = 1e-6f;    ///< area of a triangle over its longest edge squared
 constexpr float kMinPatchNormal = 1e-20f;  ///< squared length of a sum of normals that has none
 constexpr float kMinCorner = 1e-12f;       ///< 1 - weight of a corner, at that corner
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Third column of the map from (u, v, distance); the first two are by_u and by_v there.
-Mat3 axes_at(const PatchPoint& at, float distance) {
-    return {at.by_u + distance * at.normal_by_u, at.by_v + distance * at.normal_by_v, at.normal};
-}
-
-/// Tangent, bitangent and normal.
-Mat3 frame_at(const PatchPoint& at) {
-    const Vec3 tangent = normalize_or(
-        at.by_u - glm::dot(at.by_u, at.normal) * at.normal, any_perpendicular(at.normal));
-    return {tangent, glm::cross(at.normal, tangent), at.normal};
-}
-
-Vec3 anchored_point(const PatchPoint& at, const Vec3& offset) {
-    return at.position + frame_at(at) * offset;
-}
-
-/// (u, v, distance) so that the surface plus distance along its normal is `p`, from a start.
-/// False where the method does not converge.
-bool solve_uvd(std::span<const Vec4> patch, const Vec3& p, float size, Vec3& uvd) {
-    for (int i = 0; i < kSteps; ++i) {
-        const PatchPoint at = evaluate_patch(patch, uvd.x, uvd.y);
-        const Vec3 residual = p - (at.position + uvd.z * at.normal);
-        const Mat3 axes = axes_at(at, uvd.z);
-        const float volume = glm::determinant(axes);
-        if (!(std::abs(volume) > 1e-6f * size * size)) {
-            return false;
-        }
-        const Vec3 step = glm::inverse(axes) * residual;
-        uvd += step;
-        if (!is_finite(uvd) || std::abs(uvd.x) > 4.0f || std::abs(uvd.y) > 4.0f) {
-            return false;
-        }
-        if (std::max(std::abs(step.x), std::abs(step.y)) < 1e-6f
-            && std::abs(step.z) < 1e-6f * size) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool is_inside_chart(const Vec3& uvd) {
-    return uvd.x >= -kInside && uvd.y >= -kInside && uvd.x + uvd.y <= 1.0f + kInside;
-}
-
-/// The nearest point of a patch among samples, as (u, v, 0).
-Vec3 nearest_sample(std::span<const Vec4> patch, const Vec3& p) {
-    Vec3 best(0);
-    float nearest = INFINITY;
-    for (int i = 0; i <= kSamples; ++i) {
-        for (int j = 0; i + j <= kSamples; ++j) {
-            const Vec2 at = Vec2(i, j) / static_cast<float>(kSamples);
-            const float distance = glm::distance(evaluate_patch(patch, at.x, at.y).position, p);
-            if (distance < nearest) {
-                nearest = distance;
-                best = {at, 0};
-            }
-        }
-    }
-    return best;
-}
-
-/// (u, v) of the point of the triangle nearest to the solution outside of it.
-Vec2 clamp_uvd(Vec3 uvd) {
-    Vec3 weights = glm::max(Vec3(uvd.x, uvd.y, 1.0f - uvd.x - uvd.y), Vec3(0));
-    weights /= weights.x + weights.y + weights.z;
-    return {weights.x, weights.y};
-}
-
-class PatchBinder {
-  public:
-    PatchBinder(
-        std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,
-        std::span<const Vec2> chart)
-        : positions_(positions), corners_(corners), max_distance_(max_distance), chart_(chart) {
-        make_patches(positions, corners, patches_);
-        std::map<Edge, int> edges;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            ++edges[edge_at(i)];
-        }
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            borders_.push_back(edges[edge_at(i)] == 1);
-            if (borders_.back()) {
-                const Edge edge = edge_at(i);
-                border_corners_.insert({edge.first, edge.second});
-            }
-        }
-    }
-
-    [[nodiscard]] SurfaceAnchor
-    bind(const Vec3& point, const Vec3& normal, const Vec3& tangent) const {
-        const auto in_space = [&](std::size_t i) { return corner(i); };
-        const Faces near = nearest_faces(point, kCandidates, in_space);
-        const Faces facing = facing_along(near, normal);
-        SurfaceAnchor chosen;
-        bool chosen_border = false;
-        for (const Faces& faces : {facing, near}) {
-            SurfaceAnchor anchor;
-            SurfaceAnchor beside;
-            bool at_border = false;
-            find_inside(point, faces, anchor);
-            find_beside(point, faces, at_border, beside);
-            if (beside.patch != kNoPatch
-                && (anchor.patch == kNoPatch
-                    || glm::length(beside.offset) < glm::length(anchor.offset))) {
-                anchor = beside;
-            } else {
-                at_border = false;
-            }
-            if (anchor.patch == kNoPatch) {
-                continue;
-            }
-            const float clearly = kFacing * size_of(anchor.patch);
-            if (chosen.patch == kNoPatch
-                || glm::length(chosen.offset) > glm::length(anchor.offset) + clearly) {
-                chosen = anchor;
-                chosen_border = at_border;
-            }
-        }
-        if (chosen.patch == kNoPatch) {
-            return {};
-        }
-        chosen.share = share_of(chosen.offset, chosen_border);
-        return finished(chosen, normal, tangent);
-    }
-
-    /// `at`: of the point in the chart.
-    [[nodiscard]] SurfaceAnchor bind_by_chart(
-        const Vec3& point, const Vec3& normal, const Vec3& tangent, const Vec2& at) const {
-        const auto in_chart = [&](std::size_t i) { return Vec3(chart_[i], 0); };
-        const Faces near = nearest_faces(Vec3(at, 0), kNeighbors, in_chart);
-        SurfaceAnchor anchor;
-        for (std::size_t i = 0; i < near.size() && anchor.patch == kNoPatch; ++i) {
-            find_inside(point, {near[i]}, anchor);
-        }
-        if (!near.empty() && near[0].first > kOnChart) {
-            // Points beyond the border are bound where the surface covers them closely.
-            bool at_border = false;
-            const bool covered =
-                (anchor.patch != kNoPatch
-                 || (find_beside(point, {near[0]}, at_border, anchor) && !at_border))
-                && glm::length(anchor.offset) < kCloseTo * size_of(anchor.patch);
-            return covered ? finished(anchor, normal, tangent) : SurfaceAnchor{};
-        }
-        bool at_border = false;
-        const bool found = anchor.patch != kNoPatch
-                           || (find_beside(point, {near[0]}, at_border, anchor) && !at_border);
-        return found ? finished(anchor, normal, tangent) : SurfaceAnchor{};
-    }
-
-  private:
-    static constexpr float kOnChart = 1e-5f;
-    static constexpr float kFacing =
-        0.25f;  // of the size of a patch: one that faces away is nearer
-    static constexpr float kCloseTo = 0.25f;  // of the size of a patch
-
-    /// Faces, with the distances of their flat triangles.
-    using Faces = std::vector<std::pair<float, std::uint32_t>>;
-
-    /// The share of the motion at an offset: all within half the largest distance, none at it;
-    /// beside the surface it fades out from the border.
-    [[nodiscard]] float share_of(const Vec3& offset, bool at_border) const {
-        if (!(max_distance_ > 0.0f)) {
-            return 1.0f;
-        }
-        float share = 1.0f - smooth(2.0f * glm::length(offset) / max_distance_ - 1.0f);
-        if (at_border) {
-            share *= 1.0f - smooth(std::hypot(offset.x, offset.y) / max_distance_);
-        }
-        return std::round(255.0f * share) / 255.0f;
-    }
-    static float smooth(float t) {
-        const float s = std::clamp(t, 0.0f, 1.0f);
-        return s * s * (3.0f - 2.0f * s);
-    }
-
-    /// Adds normal and tangent, or returns an unbound anchor.
-    [[nodiscard]] SurfaceAnchor
-    finished(SurfaceAnchor anchor, const Vec3& normal, const Vec3& tangent) const {
-        if (glm::length(anchor.offset) > max_distance_ || !(anchor.share > 0.0f)) {
-            return {};
-        }
-        const PatchPoint at = evaluate_patch(patch(anchor.patch), anchor.u, anchor.v);
-        const Mat3 axes = axes_at(at, anchor.offset.z);
-        if (!(std::abs(glm::determinant(axes)) > 0.0f)) {
-            return {};
-        }
-        anchor.normal = glm::transpose(axes) * normal;
-        anchor.tangent = glm::inverse(axes) * tangent;
-        return anchor;
-    }
-
-    [[nodiscard]] std::span<const Vec4> patch(std::size_t f) const {
-        return std::span(patches_).subspan(f * kPatchTexels, kPatchTexels);
-    }
-    /// From corner i of all to the next of its face.
-    [[nodiscard]] Edge edge_at(std::size_t i) const {
-        const std::uint32_t a = corners_[i];
-        const std::uint32_t b = corners_[i % 3 == 2 ? i - 2 : i + 1];
-        return {std::min(a, b), std::max(a, b)};
-    }
-    [[nodiscard]] Vec3 corner(std::size_t i) const { return positions_[corners_[i]]; }
-
-    /// The nearest faces, by their flat triangles; `corner_at`: where corner i of all is.
-    template <typename CornerAt>
-    [[nodiscard]] Faces
-    nearest_faces(const Vec3& p, std::size_t count, const CornerAt& corner_at) const {
-        Faces nearest;
-        for (std::uint32_t f = 0; f < corners_.size() / 3; ++f) {
-            const std::size_t first = std::size_t{3} * f;
-            nearest.emplace_back(
-                distance_to_triangle(
-                    p, corner_at(first), corner_at(first + 1), corner_at(first + 2)),
-                f);
-        }
-        const auto kept = static_cast<std::ptrdiff_t>(std::min(count, nearest.size()));
-        std::partial_sort(nearest.begin(), nearest.begin() + kept, nearest.end());
-        nearest.resize(static_cast<std::size_t>(kept));
-        return nearest;
-    }
-
-    /// Faces that do not face away from the normal of a point, so that each of two touching lips is
-    /// bound to its own patches.
-    [[nodiscard]] Faces facing_along(const Faces& faces, const Vec3& normal) const {
-        Faces facing;
-        for (const auto& face : faces) {
-            const std::size_t f = std::size_t{3} * face.second;
-            const Vec3 area = glm::cross(corner(f + 1) - corner(f), corner(f + 2) - corner(f));
-            if (glm::dot(area, normal) > 0.0f) {
-                facing.push_back(face);
-            }
-        }
-        return facing;
-    }
-
-    [[nodiscard]] float size_of(std::size_t f) const {
-        return std::max(
-            glm::distance(corner(3 * f), corner(3 * f + 1)),
-            glm::distance(corner(3 * f), corner(3 * f + 2)));
-    }
-
-    /// The nearest anchor perpendicularly below the point.
-    bool find_inside(const Vec3& p, const Faces& faces, SurfaceAnchor& anchor) const {
-        float nearest = INFINITY;
-        for (const auto& [flat, f] : faces) {
-            // A patch bulges less than its size.
-            if (flat - 0.5f * size_of(f) > nearest) {
-                continue;
-            }
-            Vec3 at = nearest_sample(patch(f), p);
-            at.z = glm::dot(
-                p - evaluate_patch(patch(f), at.x, at.y).position,
-                evaluate_patch(patch(f), at.x, at.y).normal);
-            if (solve_uvd(patch(f), p, size_of(f), at) && is_inside_chart(at)
-                && std::abs(at.z) < nearest) {
-                nearest = std::abs(at.z);
-                anchor.patch = f;
-                anchor.u = at.x;
-                anchor.v = at.y;
-                anchor.offset = {0, 0, at.z};
-            }
-        }
-        return anchor.patch != kNoPatch;
-    }
-
-    /// The nearest point of a patch to `p`, whose foot, if it has one, is at `at`, in or beside the
-    /// triangle: then on the edges beyond which that lies.
-    static Vec2 nearest_beside(std::span<const Vec4> patch, const Vec3& p, const Vec3& at) {
-        const bool has_foot = is_finite(at);
-        if (has_foot && is_inside_chart(at)) {
-            return clamp_uvd(at);
-        }
-        const Vec3 foot = has_foot ? Vec3(at.x, at.y, 1.0f - at.x - at.y) : Vec3(-1);
-        Vec2 nearest(1.0f / 3.0f);
-        float least = INFINITY;
-        for (int across = 0; across < 3; ++across) {
-            if (foot[across] > 0.0f) {
-                continue;
-            }
-            const auto point = [&](float t) {
-                Vec3 weights(0);
-                weights[(across + 1) % 3] = 1.0f - t;
-                weights[(across + 2) % 3] = t;
-                return Vec2(weights);
-            };
-            const auto distance = [&](float t) {
-                const Vec2 uv = point(t);
-                return glm::distance(evaluate_patch(patch, uv.x, uv.y).position, p);
-            };
-            constexpr std::array<float, 5> kOnEdge = {0, 0.25f, 0.5f, 0.75f, 1};
-            const float best = *std::ranges::min_element(kOnEdge, {}, distance);
-            float low = std::max(best - 0.25f, 0.0f);
-            float high = std::min(best + 0.25f, 1.0f);
-            for (int i = 0; i < 12; ++i) {  // ternary search
-                const float third = (high - low) / 3.0f;
-                if (distance(low + third) < distance(high - third)) {
-                    high -= third;
-                } else {
-                    low += third;
-                }
-            }
-            const std::array<float, 3> ends = {(low + high) / 2.0f, low, high};
-            const float t = *std::ranges::min_element(ends, {}, distance);
-            if (distance(t) < least) {
-                least = distance(t);
-                nearest = point(t);
-            }
-        }
-        return nearest;
-    }
-
-    /// Above an edge: the nearest anchor, an offset that is not only along the normal, and whether
-    /// that is at the border of the surface.
-    bool
-    find_beside(const Vec3& p, const Faces& faces, bool& is_border, SurfaceAnchor& anchor) const {
-        anchor = {};
-        float nearest = INFINITY;
-        is_border = false;
-        for (const auto& [flat, f] : faces) {
-            if (flat - 0.5f * size_of(f) > nearest) {  // a patch bulges less than its size
-                continue;
-            }
-            Vec3 at = nearest_sample(patch(f), p);
-            solve_uvd(patch(f), p, size_of(f), at);
-            const Vec2 clamped = nearest_beside(patch(f), p, at);
-            const PatchPoint on = evaluate_patch(patch(f), clamped.x, clamped.y);
-            const float distance = glm::distance(on.position, p);
-            if (distance < nearest) {
-                nearest = distance;
-                anchor.patch = f;
-                anchor.u = clamped.x;
-                anchor.v = clamped.y;
-                anchor.offset = glm::transpose(frame_at(on)) * (p - on.position);
-                const float w = 1.0f - clamped.x - clamped.y;
-                const Vec3 weights(clamped, w);
-                is_border = (borders_[3 * f] && w <= kInside)
-                            || (borders_[3 * f + 1] && clamped.x <= kInside)
-                            || (borders_[3 * f + 2] && clamped.y <= kInside);
-                for (std::size_t k = 0; k < 3; ++k) {  // all of the corner's patches see it alike
-                    is_border = is_border
-                                || (weights[static_cast<int>(k)] >= 1.0f - kInside
-                                    && border_corners_.contains(corners_[3 * f + k]));
-                }
-            }
-        }
-        return anchor.patch != kNoPatch;
-    }
-
-    std::span<const Vec3> positions_;
-    std::span<const std::uint32_t> corners_;
-    float max_distance_;
-    std::span<const Vec2> chart_;  ///< per corner, or empty
-    std::vector<Vec4> patches_;
-    std::vector<bool> borders_;  ///< of the edge from each corner to the next
-    std::set<std::uint32_t> border_corners_;
-};
 
 /// Two thirds from `b` to `a`, projected into the plane through `a`.
 Vec3 edge_point(const Vec3& a, const Vec3& b, const Vec3& normal_a) {
@@ -596,51 +231,62 @@ PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v) {
     return at;
 }
 
-std::vector<SurfaceAnchor> bind_to_patches(
-    std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
-    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,
-    const PatchChart& chart) {
-    LIMN_CHECK(chart.corners.empty() || chart.corners.size() == corners.size());
-    const PatchBinder binder(positions, corners, max_distance, chart.corners);
-    std::vector<SurfaceAnchor> anchors(points.size());
-    parallel_for(points.size(), kPatchGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 tangent = Vec3(tangents[i]);
-            anchors[i] =
-                chart.corners.empty()
-                    ? binder.bind(points[i], normals[i], tangent)
-                    : binder.bind_by_chart(points[i], normals[i], tangent, chart.points[i]);
-        }
-    });
-    return anchors;
+Mat3 patch_axes(const PatchPoint& at, float distance) {
+    return {at.by_u + distance * at.normal_by_u, at.by_v + distance * at.normal_by_v, at.normal};
+}
+
+Mat3 patch_frame(const PatchPoint& at) {
+    const Vec3 tangent = normalize_or(
+        at.by_u - glm::dot(at.by_u, at.normal) * at.normal, any_perpendicular(at.normal));
+    return {tangent, glm::cross(at.normal, tangent), at.normal};
+}
+
+Vec3 anchored_point(const SurfaceAnchor& anchor, std::span<const Vec4> patches) {
+    const PatchPoint at = evaluate_patch(
+        patches.subspan(anchor.patch * kPatchTexels, kPatchTexels), anchor.u, anchor.v);
+    return at.position + patch_frame(at) * anchor.offset;
 }
 
 void follow_patches(
     std::span<const SurfaceAnchor> anchors, std::span<const Vec4> patches,
     std::span<Vec3> positions, std::span<Vec3> normals, std::span<Vec4> tangents) {
-    LIMN_CHECK(anchors.size() == positions.size());
-    for (std::size_t i = 0; i < anchors.size(); ++i) {
-        const SurfaceAnchor& anchor = anchors[i];
-        if (anchor.patch == kNoPatch) {
+    LIMN_CHECK(anchors.size() >= positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (anchors[i].patch == kNoPatch) {
             continue;
         }
-        const PatchPoint at = evaluate_patch(
-            patches.subspan(anchor.patch * kPatchTexels, kPatchTexels), anchor.u, anchor.v);
-        positions[i] = glm::mix(positions[i], anchored_point(at, anchor.offset), anchor.share);
-        if (normals.empty()) {
-            continue;
+        float stays = 1.0f;
+        Vec3 position(0);
+        Vec3 normal(0);
+        Vec3 tangent(0);
+        for (std::size_t a = i;; a = anchors[a].next) {
+            const SurfaceAnchor& anchor = anchors[a];
+            stays -= anchor.share;
+            position += anchor.share * anchored_point(anchor, patches);
+            if (!normals.empty()) {
+                const PatchPoint at = evaluate_patch(
+                    patches.subspan(anchor.patch * kPatchTexels, kPatchTexels), anchor.u, anchor.v);
+                const Mat3 axes = patch_axes(at, anchor.offset.z);
+                // The inverse transpose, times the determinant.
+                const Mat3 cofactors(
+                    glm::cross(axes[1], axes[2]), glm::cross(axes[2], axes[0]),
+                    glm::cross(axes[0], axes[1]));
+                const float side = glm::dot(axes[0], cofactors[0]) < 0.0f ? -1.0f : 1.0f;
+                normal +=
+                    anchor.share * normalize_or(side * (cofactors * anchor.normal), normals[i]);
+                tangent += anchor.share * normalize_or(axes * anchor.tangent, Vec3(tangents[i]));
+            }
+            if (anchor.next == 0) {
+                break;
+            }
         }
-        const Mat3 axes = axes_at(at, anchor.offset.z);
-        // The inverse transpose, times the determinant.
-        const Mat3 cofactors(
-            glm::cross(axes[1], axes[2]), glm::cross(axes[2], axes[0]),
-            glm::cross(axes[0], axes[1]));
-        const float side = glm::dot(axes[0], cofactors[0]) < 0.0f ? -1.0f : 1.0f;
-        const auto turn = [&](const Vec3& from, const Vec3& to) {
-            return normalize_or(glm::mix(from, normalize_or(to, from), anchor.share), from);
-        };
-        normals[i] = turn(normals[i], side * (cofactors * anchor.normal));
-        tangents[i] = Vec4(turn(Vec3(tangents[i]), axes * anchor.tangent), tangents[i].w);
+        positions[i] = stays * positions[i] + position;
+        if (!normals.empty()) {
+            normals[i] = normalize_or(stays * normals[i] + normal, normals[i]);
+            tangents[i] = Vec4(
+                normalize_or(stays * Vec3(tangents[i]) + tangent, Vec3(tangents[i])),
+                tangents[i].w);
+        }
     }
 }
 

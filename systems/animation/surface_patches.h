@@ -22,13 +22,13 @@ namespace limn {
 // whose triangles face along the normals at their ends (patch_normals.h); where two sides of a fold
 // touch, none is faced by both, and it may fold back there. Beside it there is a quadratic field of
 // unit normals, continuous across edges, which does not fold where markers crowd, as the surface's
-// own normals may. A vertex is bound once to a point of the surface at rest and a distance along
-// the normal there,
+// own normals may. A vertex is bound once (patch_binding.h) to a point of the surface at rest and a
+// distance along the normal there,
 //
 //     p = B(u, v) + d n(u, v),
 //
-// and is reconstructed from the deformed patches. Normals and tangents are transformed by the
-// derivatives of this map.
+// and is reconstructed from the deformed patches; of several such points, the mean by their shares.
+// Normals and tangents are transformed by the derivatives of this map.
 
 /// A point of a patch, and derivatives there; w = 1 - u - v.
 struct PatchPoint {
@@ -61,26 +61,17 @@ void make_patches(
 /// `patch`: the texels of one patch. u belongs to its first corner, v to the second.
 [[nodiscard]] PatchPoint evaluate_patch(std::span<const Vec4> patch, float u, float v);
 
-/// A chart that separates points and faces which touch, or nearly touch, in space.
-struct PatchChart {
-    std::span<const Vec2> points;   ///< one per point
-    std::span<const Vec2> corners;  ///< one per corner of the faces
-};
+/// Third column of the map from (u, v, distance along the normal); the first two are by u and v.
+[[nodiscard]] Mat3 patch_axes(const PatchPoint& at, float distance);
 
-/// Positions of the points on the surface. With a chart, a point is carried by the nearest patch
-/// there that is below it, or else by the nearest one; points beyond all faces of the chart, such
-/// as a torso below the surface of a head, are bound only within a quarter of a patch. Without a
-/// chart, a point is carried by the nearest patches in space that do not face away from its normal,
-/// or else by the nearest border, and follows less the farther it is: all the motion within half of
-/// `max_distance` [m] of the surface, fading out up to it, and from the border on. A point that is
-/// farther is not bound: patch = kNoPatch. Takes O(points * patches) time.
-[[nodiscard]] std::vector<SurfaceAnchor> bind_to_patches(
-    std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const Vec4> tangents,
-    std::span<const Vec3> positions, std::span<const std::uint32_t> corners, float max_distance,
-    const PatchChart& chart = {});
+/// Tangent, bitangent and normal, in which the offset of an anchor is.
+[[nodiscard]] Mat3 patch_frame(const PatchPoint& at);
 
-/// Moves bound vertices in place; others do not move. All three spans have the length of `anchors`;
-/// normals and tangents may both be empty.
+/// Where an anchor alone would move its vertex.
+[[nodiscard]] Vec3 anchored_point(const SurfaceAnchor& anchor, std::span<const Vec4> patches);
+
+/// Moves bound vertices in place; others do not move. Each has one anchor at its own index, and
+/// those that follow it; normals and tangents may both be empty.
 void follow_patches(
     std::span<const SurfaceAnchor> anchors, std::span<const Vec4> patches,
     std::span<Vec3> positions, std::span<Vec3> normals, std::span<Vec4> tangents);

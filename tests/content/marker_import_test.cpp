@@ -185,6 +185,10 @@ TEST_CASE(
     REQUIRE(read.meshes.size() == 1);
     const MeshData& surface = read.meshes[0];
     CHECK(surface.positions.size() == 25);
+    // It mirrors no lamp either, as a transparent one would.
+    REQUIRE(read.materials.size() == 1);
+    CHECK(read.materials[0].alpha_mode == AlphaMode::Mask);
+    CHECK(read.materials[0].base_color.w < read.materials[0].alpha_cutoff);
     CHECK(surface.indices.size() >= 3 * 32);  // more: slivers along the hull
     CHECK(read.skeleton.joints.size() >= 26);
     REQUIRE(read.clips[0].sheets.size() == 1);

@@ -1,4 +1,5 @@
 #include "ecs/base/rng.h"
+#include "systems/animation/patch_binding.h"
 #include "systems/animation/patch_kernels.h"
 #include "systems/animation/surface_patches.h"
 #include "tests/near.h"
@@ -76,7 +77,7 @@ struct Skin {
         normals.assign(positions.size(), glm::normalize(Vec3(0.2f, 1, -0.1f)));
         tangents.assign(positions.size(), Vec4(1, 0, 0, -1));
         anchors = bind_to_patches(
-            positions, normals, tangents, surface.positions, surface.corners, max_distance);
+            {positions, normals, tangents}, surface.positions, surface.corners, max_distance);
     }
     [[nodiscard]] Skin follow(const Surface& surface) const {
         Skin moved = *this;
@@ -434,7 +435,7 @@ TEST_CASE(
     skin.bind(surface, 1);
     skin.normals.assign(skin.positions.size(), Vec3(0, 1, 0));
     skin.anchors = bind_to_patches(
-        skin.positions, skin.normals, skin.tangents, surface.positions, surface.corners, 1);
+        {skin.positions, skin.normals, skin.tangents}, surface.positions, surface.corners, 1);
     const Skin moved = skin.follow(bent);
     for (std::size_t i = 0; i < skin.positions.size(); i += 3) {
         const Vec3 along_x = moved.positions[i + 1] - moved.positions[i];
@@ -515,7 +516,7 @@ float largest_stretch_of_jaw() {
     skin.normals = skin.positions;
     skin.tangents.assign(skin.positions.size(), Vec4(1, 0, 0, 1));
     skin.anchors = bind_to_patches(
-        skin.positions, skin.normals, skin.tangents, markers.positions, markers.corners, 0.8f);
+        {skin.positions, skin.normals, skin.tangents}, markers.positions, markers.corners, 0.8f);
     Surface open = markers;
     open.positions[2].y -= 0.2f;
     open.update();
@@ -591,7 +592,7 @@ TEST_CASE(
     }
     const std::vector<Vec4> tangents(points.size(), Vec4(1, 0, 0, 1));
     const std::vector<SurfaceAnchor> anchors =
-        bind_to_patches(points, normals, tangents, lips.positions, lips.corners, 1);
+        bind_to_patches({points, normals, tangents}, lips.positions, lips.corners, 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
         REQUIRE(anchors[i].patch != kNoPatch);
         CHECK((anchors[i].patch < lower) == (normals[i].y > 0));
@@ -627,7 +628,8 @@ TEST_CASE(
     const std::vector<Vec3> normals(skin.positions.size(), Vec3(0, 1, 0));
     const std::vector<Vec4> tangents(skin.positions.size(), Vec4(1, 0, 0, 1));
     const std::vector<SurfaceAnchor> anchors = bind_to_patches(
-        skin.positions, normals, tangents, lips.positions, lips.corners, 1, {chart, corner_chart});
+        {skin.positions, normals, tangents}, lips.positions, lips.corners, 1,
+        {chart, corner_chart});
     for (std::size_t i = 0; i < anchors.size(); ++i) {
         REQUIRE(anchors[i].patch != kNoPatch);
         CHECK((anchors[i].patch < lower) == (i % 2 == 0));

@@ -182,7 +182,7 @@ GltfScene make_scene(const std::string& name, const Take& take, MeshData surface
     scene.skins.push_back(std::move(skin));
     scene.meshes.push_back(std::move(surface));
     scene.materials.push_back(
-        {.name = "unseen", .alpha_mode = AlphaMode::Blend, .base_color = Vec4(0)});
+        {.name = "unseen", .alpha_mode = AlphaMode::Mask, .base_color = Vec4(0)});
     scene.clips.push_back(make_clip(face));
     return scene;
 }

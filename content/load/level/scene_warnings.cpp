@@ -99,6 +99,7 @@ constexpr Need kNeeds[] = {
     {"speed_view", {"camera", "", ""}},
     {"fur", {"mesh_instance", "", ""}},
     {"inflate", {"mesh_instance", "", ""}},
+    {"surface_binding", {"mesh_instance", "", ""}},
     {"no_shadow", {"mesh_instance", "", ""}},
     {"mesh_levels", {"mesh_instance", "", ""}},
     {"deformed", {"mesh_instance", "control_surface", ""}},
