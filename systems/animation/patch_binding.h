@@ -16,6 +16,8 @@ namespace limn {
 // the nearest one, with weights that are continuous along the mesh. A patch is far if the way to it
 // along the mesh is: the upper lip does not follow markers of the lower one (marker_paths.h), and
 // where a triangle of the net spans an opening of the mesh, such as the mouth, nothing follows it.
+// Normals leave out the gradients of the weights. Beside the border of a net, where the nearest
+// patch changes, the fade to rest may still jump.
 
 /// A chart that separates points and faces which touch, or nearly touch, in space.
 struct PatchChart {
