@@ -47,8 +47,8 @@ LIMN_FIELDS(OrbitCamera) {
         turns, "azimuth and elevation refer to the axes of the target; or else of the world");
     LIMN_FIELD(
         clearance,
-        "comes closer where Walkable meshes would hide the target, and stays this far "
-        "before them; 0: passes through",
+        "comes closer where Walkable meshes would hide the target, rises over characters between, "
+        "and stays this far before all of them; 0: passes through",
         "m", 0, 10);
 }
 

@@ -48,8 +48,15 @@ LIMN_FIELDS(Ragdoll) {
     LIMN_FIELD(bounce, "fraction of the impact speed that is kept, outward", "", 0, 1);
     LIMN_FIELD(damping, "rate at which joints slow down", "1/s", 0, 1000);
     LIMN_FIELD(gravity, "factor on 9.81 m/s^2 downwards", "", -100, 100);
-    LIMN_FIELD(stiffness, "of muscles that hold the animated pose: 0 limp, 1 stiff", "", 0, 1);
-    LIMN_FIELD(collapse, "time in which the muscles give way after the switch", "s", 0, 60);
+    LIMN_FIELD(
+        stiffness, "of muscles that hold the animated pose: 0 limp, but for `collapse`, 1 stiff",
+        "", 0, 1);
+    LIMN_FIELD(
+        collapse,
+        "time in which the muscles give way after the switch; for six times as long who falls "
+        "bends "
+        "knees and hips and puts the arms ahead; 0: limp at once",
+        "s", 0, 60);
     LIMN_FIELD(
         get_up, "time in which it gets into a crouch, then up into the animation again", "s", 0,
         60);

@@ -27,10 +27,18 @@ const int kMaxTaps = 8;
 // per pixel in both directions, so several follow the longer side of the pixel's footprint.
 vec4 filtered(vec2 uv, vec2 dx, vec2 dy) {
     vec2 size = vec2(textureSize(image, 0));
-    vec2 lengths = max(vec2(length(dx * size), length(dy * size)), 1e-6);
-    vec2 along = lengths.x > lengths.y ? dx : dy;
-    vec2 across = lengths.x > lengths.y ? dy : dx;
-    float ratio = max(lengths.x, lengths.y) / min(lengths.x, lengths.y);
+    // The axes of the ellipse that a circle of a pixel's width becomes in the texture: of J J^T.
+    vec2 s = dx * size;
+    vec2 t = dy * size;
+    float a = s.x * s.x + t.x * t.x;
+    float b = s.x * s.y + t.x * t.y;
+    float c = s.y * s.y + t.y * t.y;
+    float root = length(vec2(0.5 * (a - c), b));
+    float angle = root > 0.0 ? 0.5 * atan(b, 0.5 * (a - c)) : 0.0;
+    vec2 lengths = sqrt(max(0.5 * (a + c) + vec2(root, -root), 1e-12));
+    vec2 along = vec2(cos(angle), sin(angle)) * lengths.x / size;
+    vec2 across = vec2(-sin(angle), cos(angle)) * lengths.y / size;
+    float ratio = lengths.x / lengths.y;
     int taps = int(clamp(ceil(ratio), 1.0, float(kMaxTaps)));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < taps; ++i) {

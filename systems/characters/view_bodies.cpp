@@ -10,9 +10,10 @@ namespace limn {
 namespace {
 
 constexpr float kLargestLift = 0.75f;  // elevation up to which it rises over people [rad]
-constexpr float kBesideFull = 0.25f;   // so far from the line of sight one is looked over [m]
-constexpr float kBesideNone = 0.9f;    // and so far one is not in the way [m]
-constexpr float kReachOfBody = 4.0f;   // from its root to any of its joints, at most [m]
+// Lateral distances from the line of sight [m]:
+constexpr float kBesideFull = 0.25f;  // up to which a joint is looked over
+constexpr float kBesideNone = 0.9f;   // at which it no longer occludes
+constexpr float kReachOfBody = 4.0f;  // of joints from the root, at most [m]
 
 /// 1 up to `full`, 0 from `none` on, with a continuous slope.
 float fall_off(float x, float full, float none) {
@@ -58,17 +59,17 @@ Vec3 look_over_bodies(
     for (const JointPlaces& joints : bodies) {
         for (const Vec3& joint : joints) {
             const Vec3 to = joint - point;
-            const float far = glm::dot(to, ahead);
+            const float forward = glm::dot(to, ahead);
             const float beside = std::abs(to.x * ahead.z - to.z * ahead.x);
-            const float nearest = std::max(far, kBesideFull + clearance) - kBodyRadius;
+            const float nearest = std::max(forward, kBesideFull + clearance) - kBodyRadius;
             const float above = std::atan2(to.y + kBodyRadius + clearance, nearest);
             const float rise = std::min(above, kLargestLift) - elevation;
             // Those about `point` are beside it, and those behind the camera do not hide it.
-            const float counts =
+            const float weight =
                 fall_off(beside, kBesideFull, kBesideNone)
-                * (1.0f - fall_off(far, 0.5f * kBesideFull, kBesideFull + clearance))
-                * fall_off(far, distance, distance + kBesideNone);
-            lift = std::max(lift, counts * rise);
+                * (1.0f - fall_off(forward, 0.5f * kBesideFull, kBesideFull + clearance))
+                * fall_off(forward, distance, distance + kBesideNone);
+            lift = std::max(lift, weight * rise);
         }
     }
     if (lift <= 0) {
@@ -91,21 +92,21 @@ Vec3 keep_off_bodies(
         float from;
         float to;
     };
-    std::vector<Stretch> taken;  // of the way, from `point` on
+    std::vector<Stretch> blocked;  // of the way, from `point` on
     for (const JointPlaces& joints : bodies) {
         for (const Vec3& joint : joints) {
             const Vec3 to = joint - point;
             const float middle = glm::dot(to, ahead);
             const float half = radius * radius - (glm::dot(to, to) - middle * middle);
             if (half > 0 && middle > 0 && glm::length(to) > radius) {
-                taken.push_back({middle - std::sqrt(half), middle + std::sqrt(half)});
+                blocked.push_back({middle - std::sqrt(half), middle + std::sqrt(half)});
             }
         }
     }
     float place = distance;
     for (bool moved = true; moved;) {
         moved = false;
-        for (const Stretch& stretch : taken) {
+        for (const Stretch& stretch : blocked) {
             if (stretch.from < place && place < stretch.to) {
                 place = stretch.from;
                 moved = true;

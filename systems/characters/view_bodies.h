@@ -15,9 +15,9 @@ namespace limn {
 // follows, and enters nobody.
 //
 // A body is a ball about each of its joints, as they are posed. How much the camera rises depends
-// on where people are in this step alone, and continuously so: who walks through between raises it
-// while they come closer, and lowers it as they leave. Who stands so near that a steep view would
-// be needed hides whom it follows.
+// on where people are in this step alone, and continuously so: it rises while somebody walks into
+// the line of sight, and sinks as they leave it. Who stands so near that a steep view would be
+// needed hides whom it follows.
 
 /// Radius of a body about its joints, by eye [m].
 inline constexpr float kBodyRadius = 0.16f;

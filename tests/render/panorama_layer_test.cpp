@@ -177,7 +177,7 @@ TEST_CASE_FIXTURE(
         {.image = add(paint(256, 256, [&](double x, double) { return Vec4(hue(x), 0.3, 0, 1); })),
          .half_angle = radians(15.0f),
          .repeat = 1});
-    for (const float roll : {0.0f, 90.0f}) {  // of the camera
+    for (const float roll : {0.0f, 45.0f, 90.0f}) {  // of the camera
         CAPTURE(roll);
         const Affine pose =
             affine_from({0, 0, 0}, rotation_about({0, 0, 1}, radians(roll)), Vec3(1));
@@ -185,8 +185,10 @@ TEST_CASE_FIXTURE(
             {.fov_y = radians(60.0f), .near = 0.05f}, pose, pose, {.width = 65, .height = 65}));
         for (int i = 0; i < 65; ++i) {
             CAPTURE(i);
-            const double across = (i + 0.5 - 32.5) / 32.5 * std::tan(kTurn / 12);
-            const Vec3 got = roll == 0.0f ? rgb_at(image, i, 32) : rgb_at(image, 32, 64 - i);
+            // Along the horizon.
+            const double stretch = roll == 45.0f ? std::sqrt(2.0) : 1;
+            const double across = stretch * (i + 0.5 - 32.5) / 32.5 * std::tan(kTurn / 12);
+            const Vec3 got = rgb_at(image, roll == 90.0f ? 32 : i, roll == 0.0f ? 32 : 64 - i);
             CHECK(std::abs(got.x - hue(std::atan(across) / kTurn + 0.5)) < 0.06);
             CHECK(got.y == test::near(0.3).epsilon(0.01));
         }

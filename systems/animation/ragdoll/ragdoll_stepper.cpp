@@ -376,7 +376,7 @@ class RagdollStepper {
         apply_push(scene);
         const Muscles muscle = muscles();
         const double rate = std::hypot(muscle.hold, muscle.brace);
-        bool is_pulled = rate > 0;
+        bool is_pulled = muscle.hold > 0;  // who only braces may lie still
         for (RigidCapsule& body : scene.bodies) {
             const Vec3 pull =
                 field_acceleration(Vec3(body.position), Vec3(body.velocity)) + float_in_water(body);

@@ -17,7 +17,7 @@ namespace limn {
 // One step of one ragdoll: from its animation or its state of the step before to its state.
 //
 // At the switch its muscles hold the animation, for `collapse`. Then, for six times as long, they
-// turn joints weakly toward the middle of what they can, as people do whom a fall surprises: knees
+// turn joints weakly toward the middle of their limits, as people do whom a fall surprises: knees
 // and hips give way, arms go ahead. With a collapse of 0 it is limp at once.
 
 /// All that is the same for all ragdolls of a step.
