@@ -223,6 +223,20 @@ TEST_CASE("level: a camera with a path begins where the path does") {
     CHECK((t.rotation * Vec3(0, 0, -1)).x == test::near(-1.0f));
 }
 
+TEST_CASE("level: events remove only components that a level can have") {
+    for (const char* const name : {"parent", "name", "particle_pool"}) {
+        const Result<Level> level = parse_level(
+            R"({"entities": [{"name": "lamp"}],
+                "events": [{"at": 1, "set": {"lamp": {")"
+                + std::string(name) + R"(": null}}}]})",
+            "t.level.json");
+        REQUIRE_FALSE(level.ok());
+        CHECK(
+            level.error().message.find("null for the component \"" + std::string(name))
+            != std::string::npos);
+    }
+}
+
 TEST_CASE("level: events name entities, resources and what they spawn") {
     World world;
     spawn_into(world, R"({

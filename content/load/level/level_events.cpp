@@ -3,7 +3,9 @@
 #include "content/load/level/level_hints.h"
 #include "ecs/base/text.h"
 #include "ecs/components/input.h"
+#include "ecs/components/name.h"
 #include "ecs/field_access.h"
+#include "ecs/hierarchy.h"
 
 #include <fmt/format.h>
 
@@ -168,6 +170,12 @@ struct EventReader {
                 "one of `limn components`" + event_hint(member.key, hint));
         }
         if (action.action == EventAction::Remove) {
+            if (info == &component_info<Parent>() || info == &component_info<Name>()
+                || is_internal(*info)) {
+                return error_at(
+                    at, member.at, "null for the component " + in_quotes(member.key),
+                    "a component that a level can have");
+            }
             action.value = AnyComponent(*info);
         } else {
             LIMN_TRY(read_edits(member.value, *info, location_in(at, member.key), names, action));
