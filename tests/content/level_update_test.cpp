@@ -198,6 +198,18 @@ TEST_CASE("level update: added or removed entities, components or assets need a 
     CHECK(level.emitter(0).rate == 10);
 }
 
+TEST_CASE("level update: another component that events remove at the start needs a reload") {
+    Playing level;
+    const std::string start = R"(], "events": [{"at": )";
+    const std::string rest = R"(, "set": {"one": {"particle_emitter": null}}})";
+    level.write_level(start + "0" + rest);
+    CHECK(
+        level.update()
+        == "t.level.json: events at the start remove other components: reload the level");
+    level.write_level(start + "3" + rest);
+    CHECK(level.update() == "0");
+}
+
 TEST_CASE("level update: events spawn what the updated files define") {
     Playing level;
     level.write_level("");

@@ -188,6 +188,24 @@ void each_first_set(const EventList& list, Visit&& visit) {
     }
 }
 
+/// What events at the start of the level remove. In events that are not spawned yet, entities are
+/// indices into `entities`.
+std::vector<std::pair<Entity, const ComponentInfo*>>
+first_removals(const EventList& list, const std::vector<Entity>& entities) {
+    std::vector<std::pair<Entity, const ComponentInfo*>> removals;
+    for (const ScriptEvent& event : list.events) {
+        for (const ScriptAction& action : event.actions) {
+            if (event.time != 0 || !event.key.empty() || action.action != EventAction::Remove) {
+                continue;
+            }
+            const bool is_index = action.entity.generation == prefab_entity(0).generation;
+            removals.emplace_back(
+                is_index ? entities[action.entity.index] : action.entity, &action.value.info());
+        }
+    }
+    return removals;
+}
+
 /// Applies what new or changed events set at the start of the level, which has passed already.
 std::vector<LevelChange> find_first_sets(const World& world, const EventList& before) {
     std::vector<LevelChange> changes;
@@ -302,6 +320,10 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     }
     if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
         return fail("{}: changes of glTF nodes differ: reload the level", path);
+    }
+    if (first_removals(world.resource<EventList>(), fields.entities)
+        != first_removals(level.events, fields.entities)) {
+        return fail("{}: events at the start remove other components: reload the level", path);
     }
     std::vector<LevelChange> changes = find_changes(world, fields, now);
     for (LevelChange& change : changes) {

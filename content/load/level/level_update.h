@@ -51,8 +51,8 @@ struct LevelChange {
 /// the level. Motion graphs that have changed are replaced in the next step (MotionGraphs::edits),
 /// new ones are added, and those that were removed stay unused. Returns the changes. Fails, and
 /// changes nothing, with the loader's error, or if entities, kinds of components, changes of glTF
-/// nodes or assets differ, which needs a reload. `world` must have been empty when the level was
-/// spawned.
+/// nodes, assets or what events remove at the start differ, which needs a reload. `world` must have
+/// been empty when the level was spawned.
 [[nodiscard]] Result<std::vector<LevelChange>> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
 
