@@ -21,8 +21,8 @@ struct EditedLevel {
 };
 
 /// The level of the file `path`, with the edits of the world that was loaded from it, as the text
-/// of the file `out`. `spawned`: its entities in the level's order (LevelFields); without a name,
-/// they are found by it. Fails if the file cannot be read, if what it would be is no level, or if
+/// of the file `out`. `spawned`: its entities in the level's order (LevelFields), by which they
+/// are found in the file. Fails if the file cannot be read, if what it would be is no level, or if
 /// it refers to files and `out` is in another folder.
 [[nodiscard]] Result<EditedLevel> edited_level(
     const std::string& path, const std::string& out, World& world, std::span<const Edit> edits,

@@ -528,7 +528,7 @@ void LevelEntities::resolve(List& list, bool is_level) {
         }
         const std::int64_t outside = is_level ? -1 : find(use.name);
         if (outside < 0 && names_.entity) {
-            return names_.entity(use.name, use.at);  // of the world that the level has become
+            return names_.entity(use.name, use.at);  // else an entity of the loaded world
         }
         return outside < 0 ? std::nullopt
                            : std::optional(level_entity(static_cast<std::uint32_t>(outside)));
