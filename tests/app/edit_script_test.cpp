@@ -5,6 +5,7 @@
 #include "content/app/panels/inspector.h"
 #include "content/app/panels/subtree_edits.h"
 #include "content/load/files/atomic_file.h"
+#include "ecs/components/camera.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
@@ -62,7 +63,7 @@ struct EditedLevelFile {
         REQUIRE(write_file(path, text).ok());
         REQUIRE(write_file(folder.file("leaf.effect.json"), R"({"prefabs": {"leaf": {}}})").ok());
         stage = open(path);
-        script = EditScript(path);
+        script = EditScript({path, stage->scene.fields.entities});
     }
 
     static std::unique_ptr<Stage> open(const std::string& file) {
@@ -304,8 +305,141 @@ TEST_CASE(
         level.run("undo");
     }
     CHECK(find(level.world(), "second").is_null());
+    // By the names of the file.
+    level.run("set eye.name.text = view");
+    level.run("place pair");
+    CHECK(describe(level.world()).find(R"("target": "view")") != std::string::npos);
     level.script = EditScript();
     CHECK(level.error("place pair").find("expected one with prefabs") != std::string::npos);
+}
+
+TEST_CASE("edit script: one instance is placed of a prefab that is repeated") {
+    for (const char* const count : {"6", "1"}) {
+        EditedLevelFile level(
+            R"({"prefabs": {"wisp": {"point_light": {}, "repeat": {"count": [)" + std::string(count)
+            + R"(, 1, 1]}, "children": [{"name": "glow"}]}}, "entities": [{"name": "eye", "camera": {}}]})");
+        const std::string before = describe(level.world());
+        level.run("place wisp");
+        CHECK_FALSE(find(level.world(), "wisp").is_null());
+        CHECK(find(level.world(), "wisp[0]").is_null());
+        CHECK(level.save().left_out.empty());
+        level.run("undo");
+        CHECK(describe(level.world()) == before);
+    }
+}
+
+TEST_CASE("edit script: what is placed refers to the level's entities, not to inner ones") {
+    EditedLevelFile level(R"({
+        "prefabs": {"lantern": {"children": [{"name": "flame"}]},
+                    "watcher": {"orbit_camera": {"target": "flame"}}},
+        "entities": [{"name": "lantern", "prefab": "lantern"}, {"name": "flame"},
+                     {"name": "eye", "camera": {}}]})");
+    World& world = level.world();
+    const Entity flame = level.stage->scene.fields.entities[2];
+    REQUIRE(parent_of(world, flame).is_null());
+    level.run("place watcher");
+    CHECK(world.get<const OrbitCamera>(find(world, "watcher")).target == flame);
+    CHECK(level.error("set flame.name.text = ember").find("found 2 entities") != std::string::npos);
+}
+
+TEST_CASE("edit script: what sways about its place does so where the inspector places it") {
+    EditedLevelFile level(R"({"prefabs": {"bough": {"sway": {}, "repeat": {"count": [2, 1, 1]}}},
+                              "entities": [{"name": "eye", "camera": {}}]})");
+    World& world = level.world();
+    const std::string before = describe(world);
+    Inspector inspector;
+    CHECK_FALSE(inspector.place(world, "bough", {1, 2, 3}).ends_with("placed"));
+    inspector.reset({level.path, level.stage->scene.fields.entities});
+    CHECK(inspector.take_placed().empty());
+    CHECK(inspector.place(world, "bogh", {}).find("did you mean bough?") != std::string::npos);
+    CHECK(inspector.place(world, "bough", {1, 2, 3}) == "bough: placed");
+    const Entity bough = find(world, "bough");
+    CHECK(inspector.selected() == bough);
+    CHECK(world.value<Transform>(bough).position == Vec3(1, 2, 3));
+    CHECK(world.value<Sway>(bough).center == Vec3(1, 2, 3));
+    inspector.undo_stack().undo(world);
+    CHECK(describe(world) == before);
+}
+
+TEST_CASE("edit script: a name that the file cannot have keeps nothing else from it") {
+    EditedLevelFile level;
+    level.run("add eye.orbit_camera");
+    level.run("set eye.orbit_camera.target = row[0]");
+    level.run("set row[0].name.text = gap");
+    level.run("duplicate eye");
+    level.run("duplicate box");
+    level.run("set box 2.name.text = crate");
+    level.run("set eye.orbit_camera.target = crate");
+    const EditedLevel saved = level.save();
+    REQUIRE(saved.left_out.size() == 1);
+    CHECK(saved.left_out[0].starts_with("the new name of \"row[0]\""));
+    CHECK(saved.text.find("\"eye 2\"") != std::string::npos);
+    CHECK(saved.text.find(R"("target": "crate")") != std::string::npos);
+}
+
+TEST_CASE("edit script: a new name that would change what others refer to is left out") {
+    struct Case {
+        const char* level;
+        std::vector<const char*> lines;
+        const char* why;
+    };
+    const Case cases[] = {
+        {R"("prefabs": {"lantern": {"orbit_camera": {"target": "box"},
+                                    "children": [{"name": "flame"}]}},
+            "entities": [{"name": "box"})",
+         {"set box.name.text = flame"},
+         "prefabs have entities called \"flame\""},
+        {R"("entities": [{"name": "box"}, {"name": "other"})",
+         {"delete box", "set other.name.text = box"},
+         "the file refers to the deleted \"box\""},
+        {R"("prefabs": {"fox": {"repeat": {"count": [1, 1, 1]}}},
+            "entities": [{"name": "box"}, {"name": "row", "prefab": "fox"})",
+         {"set row[0].name.text = gap"},
+         "the level's file does not list it"}};
+    for (const Case& one : cases) {
+        CAPTURE(one.level);
+        EditedLevelFile level(
+            R"({"events": [{"at": 5, "destroy": ["box"]}], )" + std::string(one.level)
+            + R"(, {"name": "eye", "camera": {}}]})");
+        for (const char* const line : one.lines) {
+            level.run(line);
+        }
+        const EditedLevel saved = level.save();
+        REQUIRE(saved.left_out.size() == 1);
+        CHECK(saved.left_out[0].find(one.why) != std::string::npos);
+    }
+}
+
+TEST_CASE("edit script: two entities of a file with one name keep it") {
+    EditedLevelFile level(R"({"prefabs": {"post": {"spin": {}}}, "entities": [
+        {"name": "a", "prefab": "post", "children": [{"name": "sign"}]},
+        {"name": "b", "prefab": "post", "children": [{"name": "sign"}]},
+        {"name": "eye", "camera": {}}]})");
+    UndoStack undo;
+    Edit edit;
+    edit.entity = level.stage->scene.fields.entities[1];
+    edit.before = AnyComponent::of(Name{"sign"});
+    edit.after = AnyComponent::of(Name{"board"});
+    apply_edit_value(level.world(), edit, edit.after);
+    undo.record(edit);
+    const EditedLevel saved = level.save(undo.done());
+    REQUIRE(saved.left_out.size() == 1);
+    CHECK(saved.left_out[0].find("other entities have that name") != std::string::npos);
+    CHECK(saved.text.find("board") == std::string::npos);
+}
+
+TEST_CASE("edit script: a file that was written since is not taken for the level") {
+    EditedLevelFile level(R"({"entities": [
+        {"name": "first"}, {"name": "second"}, {"name": "eye", "camera": {}}]})");
+    level.run("set first.transform.scale = [2, 2, 2]");
+    REQUIRE(write_file(level.path, R"({"entities": [{"name": "second"}, {"name": "first"},
+                                                     {"name": "eye", "camera": {}}]})")
+                .ok());
+    const std::string file = level.folder.file("out.level.json");
+    REQUIRE(write_file(file, level.save().text).ok());
+    const std::unique_ptr<Stage> reopened = EditedLevelFile::open(file);
+    const World& world = reopened->world;
+    CHECK(world.value<Transform>(find(world, "first")).scale == Vec3(2));
 }
 
 TEST_CASE("edit script: what is deleted and referred to is destroyed at the start") {

@@ -279,7 +279,7 @@ Command add_edit(CLI::App& program, EditOptions& options) {
                 "  set PATH = VALUE   as --set of `limn render`\n"
                 "  add NAME.COMPONENT, remove NAME.COMPONENT\n"
                 "  cut NAME, copy NAME, paste [PARENT], duplicate NAME, delete NAME\n"
-                "  place PREFAB, undo, redo\n"
+                "  place PREFAB (at the origin), undo, redo\n"
                 "where NAME and PARENT are entities. Whole entities take their children with them; "
                 "cut and\n"
                 "paste keep the world transform. An edit that fails ends the command, and nothing "

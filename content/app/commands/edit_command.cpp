@@ -50,7 +50,8 @@ Status run_edit(const EditOptions& options) {
         return fail("limn edit: found no edits, expected some, or --script");
     }
     const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(options.scene));
-    EditScript script(stage->scene.path);
+    const LoadedScene& scene = stage->scene;
+    EditScript script(PlacedLevel{scene.model ? "" : scene.path, scene.fields.entities});
     for (const EditLine& line : lines) {
         const Result<std::string> done = script.run(stage->world, line.text);
         if (!done) {

@@ -159,6 +159,11 @@ class CopiedTree {
             return own != names_.end() ? own->second : others(entity);
         };
     }
+    /// With names as they are saved.
+    CopiedTree(const World& world, const Hierarchy& tree, Entity root, const BeforeEdits& before)
+        : CopiedTree(world, tree, root) {
+        provider_.entity = [&before](Entity entity) { return before.name(entity); };
+    }
     CopiedTree(const CopiedTree&) = delete;
     CopiedTree& operator=(const CopiedTree&) = delete;
 
@@ -383,7 +388,11 @@ BeforeEdits::BeforeEdits(const World& world, std::span<const Edit> edits) : worl
     const auto add_parent = [&](Entity entity, const AnyComponent& value) {
         parents_.try_emplace(entity, value.is_empty() ? Entity{} : value.as<Parent>().entity);
     };
+    std::unordered_set<Entity> made;
     for (const Edit& edit : edits) {
+        if (edit.tree && edit.tree->made) {
+            made.insert(edit.tree->entities.begin(), edit.tree->entities.end());
+        }
         if (edit.tree && !edit.tree->made) {
             const EditedTree& tree = *edit.tree;
             for (std::size_t i = 0; i < tree.entities.size(); ++i) {
@@ -404,7 +413,7 @@ BeforeEdits::BeforeEdits(const World& world, std::span<const Edit> edits) : worl
         if (&edited_info(edit) == &component_info<Parent>()) {
             add_parent(edit.entity, edit.before);
         }
-        if (&edited_info(edit) == &component_info<Name>()) {
+        if (&edited_info(edit) == &component_info<Name>() && !made.contains(edit.entity)) {
             names_.try_emplace(
                 edit.entity, edit.before.is_empty() ? std::string() : edit.before.as<Name>().text);
         }
@@ -516,7 +525,7 @@ LevelEdits level_edits(const World& world, std::span<const Edit> edits, const Be
         }
         const ComponentInfo& info = edited_info(edit);
         if (is_component && (info.id == component_id<Parent> || info.id == component_id<Name>)) {
-            continue;  // TreeEdits, and new_names()
+            continue;  // TreeEdits, and renamed_entities()
         }
         const AnyComponent& first = first_edit_of(edits, edit).before;
         const JsonValue old =
@@ -560,8 +569,8 @@ LevelEdits level_edits(const World& world, std::span<const Edit> edits, const Be
     return all;
 }
 
-JsonValue entity_without_children(World& world, Entity entity) {
-    JsonValue object = CopiedTree(world, hierarchy(world), entity).object_of(entity);
+JsonValue entity_without_children(World& world, Entity entity, const BeforeEdits& before) {
+    JsonValue object = CopiedTree(world, hierarchy(world), entity, before).object_of(entity);
     std::erase_if(object.members, [](const JsonMember& m) { return m.key == "children"; });
     return object;
 }

@@ -30,7 +30,8 @@ component_as_json(const World& world, const ComponentInfo& info, const void* val
 /// out, or how it writes those of a copy made by `repeat`. Empty for other entities.
 [[nodiscard]] std::string edit_note(const World& world, Entity entity);
 
-/// Names and parents of entities before the edits.
+/// Names and parents of entities before the edits. What the edits made has the name that it has
+/// now.
 class BeforeEdits {
   public:
     BeforeEdits(const World& world, std::span<const Edit> edits);
@@ -75,8 +76,9 @@ struct LevelEdits {
 [[nodiscard]] LevelEdits
 level_edits(const World& world, std::span<const Edit> edits, const BeforeEdits& before);
 
-/// An entity as in a level, without its children.
-[[nodiscard]] JsonValue entity_without_children(World& world, Entity entity);
+/// An entity as in a level, without its children. Others have the names that they had before.
+[[nodiscard]] JsonValue
+entity_without_children(World& world, Entity entity, const BeforeEdits& before);
 
 /// A patch of the level's file, in which "entities" is an array. What was made is below its parent
 /// if that is a root, what was deleted is destroyed by an event. Comments say what was left out,

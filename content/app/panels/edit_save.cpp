@@ -56,41 +56,137 @@ JsonValue take_member(JsonValue& object, std::string_view key) {
 }
 
 /// Indices of the entities of a file, in the order of the file, parents before their children; by
-/// the entities that they became. Those that are several, by `repeat`, are left out.
+/// the entities that they became. Those that `repeat` makes are left out.
 using FilePlaces = std::unordered_map<Entity, int>;
 
-void add_positions(const JsonValue& entities, std::vector<SourcePosition>& positions) {
+/// In the order of FilePlaces.
+void list_file_nodes(const JsonValue& entities, std::vector<const JsonValue*>& nodes) {
     for (const JsonValue& entity : entities.items) {
-        positions.push_back(entity.at);
-        add_positions(entity["children"], positions);
+        nodes.push_back(&entity);
+        list_file_nodes(entity["children"], nodes);
     }
 }
 
-/// Empty if the world was loaded from another text than `level`.
-Result<FilePlaces>
-find_places(JsonValue level, const std::string& path, std::span<const Entity> spawned) {
-    const SourceFiles included = LIMN_TRY(include_files(level, path, {}));
+std::string parsed_name(const Level& level, std::size_t index) {
+    for (const AnyComponent& component : level.entities.entities[index].components) {
+        if (&component.info() == &component_info<Name>()) {
+            return component.as<Name>().text;
+        }
+    }
+    return "";
+}
+
+/// Whether the level is what became `spawned`: as many entities, of the same names.
+bool is_same_level(
+    const Level& level, const World& world, const BeforeEdits& before,
+    std::span<const Entity> spawned) {
+    bool same = level.entities.entities.size() == spawned.size();
+    for (std::size_t i = 0; same && i < spawned.size(); ++i) {
+        const std::string name = before.name(spawned[i]);
+        const bool is_destroyed = name.empty() && !exists(world, spawned[i]);
+        same = is_destroyed || name == parsed_name(level, i);
+    }
+    return same;
+}
+
+/// Empty if the world was loaded from another text than `level`, with what it includes.
+Result<FilePlaces> find_places(
+    const JsonValue& level, const std::string& path, const World& world, const BeforeEdits& before,
+    std::span<const Entity> spawned) {
     const std::string text = write_json(level);
     const Level parsed = LIMN_TRY(parse_level(text, path));
-    std::vector<SourcePosition> positions;
-    add_positions((LIMN_TRY(parse_json(text, path)))["entities"], positions);
     FilePlaces places;
-    if (parsed.entity_positions.size() != spawned.size()) {
+    if (!is_same_level(parsed, world, before, spawned)) {
         return places;
     }
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Entity>> at;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at;
     for (std::size_t i = 0; i < spawned.size(); ++i) {
-        at[{parsed.entity_positions[i].line, parsed.entity_positions[i].column}].push_back(
-            spawned[i]);
+        at[{parsed.entity_positions[i].line, parsed.entity_positions[i].column}].push_back(i);
     }
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const std::vector<Entity>& all = at[{positions[i].line, positions[i].column}];
-        if (all.size() == 1) {
-            places[all.front()] = static_cast<int>(i);
+    const JsonValue json = LIMN_TRY(parse_json(text, path));
+    std::vector<const JsonValue*> nodes;
+    list_file_nodes(json["entities"], nodes);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const JsonValue& node = *nodes[i];
+        const std::vector<std::size_t>& all = at[{node.at.line, node.at.column}];
+        // One that `repeat` made is called "post[0]".
+        if (all.size() == 1 && node.find("repeat") == nullptr
+            && parsed_name(parsed, all.front()) == node["name"].text) {
+            places[spawned[all.front()]] = static_cast<int>(i);
         }
     }
     return places;
 }
+
+/// Why a file cannot have the new names of some entities.
+class RenameCheck {
+  public:
+    /// `level` with what it includes.
+    RenameCheck(
+        const JsonValue& level, const World& world, const BeforeEdits& before,
+        const FilePlaces& places, std::span<const Entity> renamed, std::span<const Entity> deleted)
+        : level_(level), world_(world), before_(before), places_(places) {
+        list_file_nodes(level["entities"], nodes_);
+        for (const Entity entity : renamed) {
+            mark(entity, Fate::Renamed);
+        }
+        for (const Entity entity : deleted) {
+            mark(entity, Fate::Deleted);
+        }
+    }
+
+    /// "" if it can.
+    [[nodiscard]] std::string refusal(Entity entity) const {
+        if (!places_.contains(entity)) {
+            return "the level's file does not list it";
+        }
+        const std::string old = before_.name(entity);
+        if (!old.empty() && is_prefab_name(level_, old)) {
+            return "prefabs have entities of that name, too";
+        }
+        const auto is_old = [&](const JsonValue* node) { return (*node)["name"].text == old; };
+        if (!old.empty() && std::ranges::count_if(nodes_, is_old) > 1) {
+            return "other entities have that name, too";
+        }
+        const auto* const now = world_.find<Name>(entity);
+        return now != nullptr ? refusal_of(now->text) : "";
+    }
+
+  private:
+    enum class Fate : std::uint8_t { Renamed, Deleted };
+
+    void mark(Entity entity, Fate fate) {
+        if (const auto place = places_.find(entity); place != places_.end()) {
+            fates_[place->second] = fate;
+        }
+    }
+
+    [[nodiscard]] std::string refusal_of(const std::string& name) const {
+        if (is_prefab_name(level_, name)) {
+            return "prefabs have entities called " + in_quotes(name);
+        }
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if ((*nodes_[i])["name"].text != name) {
+                continue;
+            }
+            const auto fate = fates_.find(static_cast<int>(i));
+            if (fate == fates_.end()) {
+                return "another entity is called " + in_quotes(name);
+            }
+            if (fate->second == Fate::Deleted && is_referred_to(level_, name)) {
+                return "the file refers to the deleted " + in_quotes(name);
+            }
+        }
+        return "";
+    }
+
+    const JsonValue& level_;
+    const World& world_;
+    const BeforeEdits& before_;
+    const FilePlaces& places_;
+    std::vector<const JsonValue*> nodes_;
+    std::unordered_map<int, Fate> fates_;  // by place
+};
 
 /// An entity of the level's file, without its children.
 struct FileEntity {
@@ -226,7 +322,7 @@ class FileEntities {
         if (world_.has<FromGltf>(entity)) {
             return;  // comes with the file of an entity above it
         }
-        JsonValue json = entity_without_children(world_, entity);
+        JsonValue json = entity_without_children(world_, entity, before_);
         const std::string name = json["name"].text;
         if (!parent.is_null() && above < 0) {
             leave_out(quoted(name) + ", whose parent is " + quoted(before_.name(parent)));
@@ -485,8 +581,10 @@ Result<EditedLevel> edited_level(
     }
     JsonValue level = LIMN_TRY(load_json(path));
     LIMN_TRY(expect_same_folder(level, path, out));
-    FilePlaces places = LIMN_TRY(find_places(level, path, spawned));
+    JsonValue whole = level;
+    LIMN_TRY(include_files(whole, path, {}));
     const BeforeEdits before(world, edits);
+    FilePlaces places = LIMN_TRY(find_places(whole, path, world, before, spawned));
     std::vector<Entity> renamed = renamed_entities(world, edits, before);
     std::vector<std::string> left_out;
     const auto leave_out = [&](Entity entity, const std::string& why) {
@@ -495,15 +593,14 @@ Result<EditedLevel> edited_level(
             "the new name of " + (old.empty() ? "an entity without a name" : in_quotes(old)) + ": "
             + why);
     };
+    const std::vector<Entity> deleted = tree_edits(world, edits, before).deleted;
+    const RenameCheck check(whole, world, before, places, renamed, deleted);
     std::erase_if(renamed, [&](Entity entity) {
-        const bool is_listed = places.contains(entity);
-        const bool is_clear = !is_prefab_name(level, before.name(entity));
-        if (!is_listed || !is_clear) {
-            leave_out(
-                entity, is_listed ? "prefabs have entities of that name, too"
-                                  : "the level's file does not list it");
+        const std::string why = check.refusal(entity);
+        if (!why.empty()) {
+            leave_out(entity, why);
         }
-        return !is_listed || !is_clear;
+        return !why.empty();
     });
     LevelWriter writer(std::move(level), std::move(places), path, out, world, edits);
     Result<EditedLevel> saved = writer.write(renamed);

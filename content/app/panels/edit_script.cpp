@@ -3,7 +3,6 @@
 #include "content/app/panels/field_widgets.h"
 #include "content/load/files/json_document.h"
 #include "content/load/level/level_hints.h"
-#include "content/load/level/level_place.h"
 #include "content/load/level/set_value.h"
 #include "ecs/any_component.h"
 #include "ecs/base/text.h"
@@ -115,6 +114,10 @@ Result<std::string> set_field_of(World& world, UndoStack& undo, std::string_view
         if (name.size() > 1 && name.front() == '"' && name.back() == '"') {
             name = name.substr(1, name.size() - 2);
         }
+        if (target.entities.size() > 1) {
+            return fail(
+                "found {} entities for {}, expected one", target.entities.size(), in_quotes(path));
+        }
         LIMN_TRY(expect_new_name(world, name));
     }
     std::vector<Edit> edits = read_targets(world, target);
@@ -197,12 +200,11 @@ Result<std::string> EditScript::run(World& world, std::string_view line) {
         return subtrees_.paste(world, undo_, parent);
     }
     if (verb == "place") {
-        if (level_.empty()) {
+        if (level_.path.empty()) {
             return fail("found no level, expected one with prefabs");
         }
-        const std::string prefab(rest);
-        return subtrees_.place(
-            world, undo_, LIMN_TRY(read_instance(world, level_, prefab, prefab)), Vec3(0));
+        const Prefab prefab = LIMN_TRY(read_instance(world, level_, std::string(rest), Vec3(0)));
+        return subtrees_.place(world, undo_, prefab);
     }
     if (verb != "cut" && verb != "copy" && verb != "duplicate" && verb != "delete") {
         return fail(

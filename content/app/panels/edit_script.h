@@ -2,6 +2,7 @@
 
 #include "content/app/panels/subtree_edits.h"
 #include "content/app/panels/undo.h"
+#include "content/load/level/level_place.h"
 #include "ecs/base/result.h"
 
 #include <string>
@@ -21,7 +22,7 @@ class World;
 ///     cut lamp                             makes it a root, which the next paste moves
 ///     copy lamp
 ///     paste post                           below it; without a name as a root
-///     place lantern                        an instance of a prefab of the level
+///     place lantern                        an instance of a prefab of the level, at the origin
 ///     duplicate lamp                       a copy beside it
 ///     delete lamp                          with its children
 ///     undo, redo                           the last edit
@@ -30,8 +31,8 @@ class World;
 class EditScript {
   public:
     EditScript() = default;
-    /// With the file of the level, whose prefabs can be placed.
-    explicit EditScript(std::string level) : level_(std::move(level)) {}
+    /// With the level, whose prefabs can be placed.
+    explicit EditScript(PlacedLevel level) : level_(std::move(level)) {}
 
     /// Runs one line. Returns what it did, "lamp: point_light.intensity", or fails and changes
     /// nothing.
@@ -39,7 +40,7 @@ class EditScript {
     [[nodiscard]] const UndoStack& undo_stack() const { return undo_; }
 
   private:
-    std::string level_;
+    PlacedLevel level_;
     UndoStack undo_;
     SubtreeEditor subtrees_;
 };

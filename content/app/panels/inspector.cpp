@@ -80,7 +80,7 @@ bool is_editable(const ComponentInfo& info) {
 
 }  // namespace
 
-void Inspector::reset(const std::string& level) {
+void Inspector::reset(const PlacedLevel& level) {
     level_ = level;
     placed_.clear();
     undo_.clear();
@@ -141,9 +141,9 @@ std::string Inspector::run(World& world, TreeCommand command) {
 }
 
 std::string Inspector::place(World& world, const std::string& prefab, const Vec3& position) {
-    const Result<Prefab> instance = read_instance(world, level_, prefab, prefab);
-    const Result<std::string> done = instance ? subtrees_.place(world, undo_, *instance, position)
-                                              : Result<std::string>(instance.error());
+    const Result<Prefab> instance = read_instance(world, level_, prefab, position);
+    const Result<std::string> done =
+        instance ? subtrees_.place(world, undo_, *instance) : Result<std::string>(instance.error());
     if (!done) {
         return done.error().message;
     }
@@ -441,12 +441,13 @@ void Inspector::draw_add_button(World& world) {
 }
 
 void Inspector::draw_place_button() {
-    ImGui::BeginDisabled(level_.empty());
+    ImGui::BeginDisabled(level_.path.empty());
     const bool opens = ImGui::Button("Place ...", {-1, 0});
     ImGui::EndDisabled();
     if (opens) {
-        const Result<std::vector<std::string>> names = prefab_names(level_);
+        const Result<std::vector<std::string>> names = prefab_names(level_.path);
         prefabs_ = names ? *names : std::vector<std::string>();
+        no_prefabs_ = names ? "this level has no prefabs" : names.error().message;
         ImGui::OpenPopup("##place");
     }
     if (!ImGui::BeginPopup("##place")) {
@@ -458,7 +459,7 @@ void Inspector::draw_place_button() {
         }
     }
     if (prefabs_.empty()) {
-        ImGui::TextDisabled("this level has no prefabs");
+        ImGui::TextDisabled("%s", no_prefabs_.c_str());
     }
     ImGui::EndPopup();
 }

@@ -4,6 +4,7 @@
 #include "content/app/panels/storage_panel.h"
 #include "content/app/panels/subtree_edits.h"
 #include "content/app/panels/undo.h"
+#include "content/load/level/level_place.h"
 #include "ecs/any_component.h"
 #include "ecs/base/math.h"
 #include "ecs/entity.h"
@@ -59,9 +60,9 @@ class Inspector {
     [[nodiscard]] bool take_save() { return std::exchange(save_, false); }
     /// Whether "Show skeleton" of the selected entity was pressed since the last call.
     [[nodiscard]] bool take_skeleton() { return std::exchange(skeleton_, false); }
-    /// For a new world: clears the selection and the undo stack. `level`: the file it was loaded
-    /// from, whose prefabs can be placed.
-    void reset(const std::string& level = {});
+    /// For a new world: clears the selection and the undo stack. `level`: what it was loaded from,
+    /// whose prefabs can be placed.
+    void reset(const PlacedLevel& level = {});
     /// Selects a new instance of a prefab of the level, at a place in the world. Returns a line for
     /// the user, as run() does.
     std::string place(World& world, const std::string& prefab, const Vec3& position);
@@ -114,9 +115,10 @@ class Inspector {
     std::string resource_search_;
     std::string material_search_;
     std::string message_;               ///< for take_message()
-    std::string level_;                 ///< file of the level
+    PlacedLevel level_;                 ///< whose prefabs can be placed
     std::string placed_;                ///< for take_placed()
     std::vector<std::string> prefabs_;  ///< of the level, when the list was opened
+    std::string no_prefabs_;            ///< why there are none
     bool focus_ = false;
     bool step_ = false;
     bool furrows_ = false;

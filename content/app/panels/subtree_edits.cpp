@@ -146,16 +146,11 @@ Result<std::string> SubtreeEditor::duplicate(World& world, UndoStack& undo, Enti
     return entity_label(world, pasted_) + ": copied";
 }
 
-Result<std::string>
-SubtreeEditor::place(World& world, UndoStack& undo, const Prefab& prefab, const Vec3& position) {
+Result<std::string> SubtreeEditor::place(World& world, UndoStack& undo, const Prefab& prefab) {
     if (prefab.entities.empty()) {
         return fail("place: found an empty prefab, expected entities");
     }
     pasted_ = spawn_tree(world, prefab);
-    Transform placed =
-        world.has<Transform>(pasted_) ? world.value<Transform>(pasted_) : Transform{};
-    placed.position = position;
-    world.add(pasted_, placed);
     const std::string label = entity_label(world, pasted_) + ": placed";
     record_tree(world, undo, pasted_, label, true);
     return label;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/entity.h"
 #include "systems/subtrees.h"
@@ -36,9 +35,8 @@ class SubtreeEditor {
     paste(World& world, UndoStack& undo, Entity parent, KeptPlace kept = KeptPlace::World);
     /// Copies the entity beside itself, below the same parent.
     [[nodiscard]] Result<std::string> duplicate(World& world, UndoStack& undo, Entity entity);
-    /// An instance of a prefab, with its root at a place in the world.
-    [[nodiscard]] Result<std::string>
-    place(World& world, UndoStack& undo, const Prefab& prefab, const Vec3& position);
+    /// An instance of a prefab (read_instance), as a root.
+    [[nodiscard]] Result<std::string> place(World& world, UndoStack& undo, const Prefab& prefab);
     /// Takes all components of the entity and its descendants: they are gone until undo.
     [[nodiscard]] Result<std::string> remove(World& world, UndoStack& undo, Entity entity);
 

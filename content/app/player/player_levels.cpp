@@ -34,7 +34,8 @@ Status Player::load(const std::string& scene, const std::string& show) {
     options_.show = show;
     level_times_ = level_file_times();
     level_error_.clear();
-    inspector_.reset(stage_->scene.model ? "" : stage_->scene.path);
+    inspector_.reset(
+        {stage_->scene.model ? "" : stage_->scene.path, stage_->scene.fields.entities});
     edited_path_.clear();
     furrows_.reset();
     skeleton_.reset();

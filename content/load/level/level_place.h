@@ -1,6 +1,8 @@
 #pragma once
 
+#include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "ecs/entity.h"
 #include "ecs/prefab.h"
 
 #include <string>
@@ -16,10 +18,17 @@ class World;
 /// Names of the prefabs of the level's file and of what it includes, sorted.
 [[nodiscard]] Result<std::vector<std::string>> prefab_names(const std::string& path);
 
-/// An instance called `name`, to spawn in the world that was loaded from the file. Fails if the
-/// file has no such prefab, or if the prefab uses a glTF file.
+/// A level's file, and the entities that it became.
+struct PlacedLevel {
+    std::string path;
+    std::vector<Entity> entities = {};  ///< in the level's order (LevelFields)
+};
+
+/// An instance with the name of the prefab, its root at `position`, to spawn in the world that was
+/// loaded from the file. One, even if the prefab has a `repeat`. Names that the prefab does not
+/// define are those of the file, whatever the entities are called now. Fails if the file has no
+/// such prefab, or if the prefab uses a glTF file.
 [[nodiscard]] Result<Prefab> read_instance(
-    const World& world, const std::string& path, const std::string& prefab,
-    const std::string& name);
+    const World& world, const PlacedLevel& level, const std::string& prefab, const Vec3& position);
 
 }  // namespace limn

@@ -36,23 +36,31 @@ bool has_name(const JsonValue& node, const std::string& name) {
 
 struct Renamer {
     const EntityNames& names;
+    std::size_t& references;  ///< counts those that were renamed
 
-    void rename(std::string& text) const {
+    /// Whether the name has changed.
+    bool rename(std::string& text) const {
         // "post[2]" is a copy of "post"
         const std::size_t end = text.ends_with(']') ? text.rfind('[') : text.size();
         if (const auto found = names.find(text); found != names.end()) {
             text = found->second;
-        } else if (const auto repeated = names.find(text.substr(0, end)); repeated != names.end()) {
-            text = repeated->second + text.substr(std::min(end, text.size()));
+            return true;
         }
+        if (const auto repeated = names.find(text.substr(0, end)); repeated != names.end()) {
+            text = repeated->second + text.substr(std::min(end, text.size()));
+            return true;
+        }
+        return false;
     }
+
+    void refer(std::string& text) const { references += rename(text) ? 1u : 0u; }
 
     void rename_field(JsonValue& value, const FieldInfo& field) const {
         for (JsonValue& item : value.items) {
             rename_field(item, field);
         }
         if (field.type == FieldType::Entity && value.kind == JsonKind::String) {
-            rename(value.text);
+            refer(value.text);
         }
         rename_fields(value, field.fields);
     }
@@ -103,7 +111,7 @@ struct Renamer {
     /// {"lamp": {"point_light": ...}}
     void rename_targets(std::span<JsonMember> targets) const {
         for (JsonMember& target : targets) {
-            rename(target.key);
+            refer(target.key);
             rename_components(target.value);
         }
     }
@@ -116,7 +124,7 @@ struct Renamer {
             rename_resources(entries_of(event, "impulse_resources"));
             rename_nodes(elements_of(event, "spawn"), false);
             for (JsonValue& destroyed : elements_of(event, "destroy")) {
-                rename(destroyed.text);
+                refer(destroyed.text);
             }
         }
     }
@@ -128,7 +136,7 @@ struct Renamer {
                 rename_nodes(entity.value.items, true);
                 continue;
             }
-            rename(entity.key);
+            refer(entity.key);
             rename_components(entity.value);
             rename_changes(entries_of(entity.value, "children"));
         }
@@ -155,7 +163,7 @@ struct Renamer {
             rename_patch(show, "off");
             JsonValue* const camera = member_in(show, "camera");
             if (camera != nullptr && camera->kind == JsonKind::String) {
-                rename(camera->text);
+                refer(camera->text);
             }
         }
     }
@@ -164,13 +172,24 @@ struct Renamer {
 }  // namespace
 
 bool is_prefab_name(const JsonValue& level, const std::string& name) {
-    return std::ranges::any_of(level["prefabs"].members, [&](const JsonMember& prefab) {
-        return has_name(prefab.value, name);
-    });
+    const auto is_named = [&](const JsonValue& node) { return has_name(node, name); };
+    return std::ranges::any_of(level["prefabs"].members, is_named, &JsonMember::value)
+           || std::ranges::any_of(level["events"].items, [&](const JsonValue& event) {
+                  return std::ranges::any_of(event["spawn"].items, is_named);
+              });
+}
+
+bool is_referred_to(const JsonValue& level, const std::string& name) {
+    JsonValue copy = level;
+    const EntityNames same = {{name, name}};
+    std::size_t references = 0;
+    Renamer{same, references}.rename_level(copy);
+    return references > 0;
 }
 
 void rename_entities(JsonValue& level, const EntityNames& names) {
-    Renamer{names}.rename_level(level);
+    std::size_t references = 0;
+    Renamer{names, references}.rename_level(level);
 }
 
 }  // namespace limn

@@ -16,8 +16,11 @@ namespace limn {
 /// New names by old ones.
 using EntityNames = std::map<std::string, std::string>;
 
-/// Whether some prefab of the level has an entity of this name.
+/// Whether some prefab of the level, or what an event spawns, has an entity of this name.
 [[nodiscard]] bool is_prefab_name(const JsonValue& level, const std::string& name);
+
+/// Whether fields, events or shows of the level refer to an entity of this name.
+[[nodiscard]] bool is_referred_to(const JsonValue& level, const std::string& name);
 
 /// Renames all of them at once, so that two can swap their names.
 void rename_entities(JsonValue& level, const EntityNames& names);
