@@ -223,7 +223,7 @@ std::vector<Vec3> sew_column(ShirtGrid& grid, int column, const HeadShape& shape
 }  // namespace
 
 std::vector<bool> find_covered_skin(const std::vector<Vec3>& skin) {
-    constexpr float kMargin = 2.5f;  // [cm], more than the skin there moves with the head
+    constexpr float kMargin = 2;  // [cm], more than the skin there moves with the head
     LIMN_CHECK(skin.size() == head_layout(true).vertices.size());
     const std::vector<float> starts = necklines(skin_columns(skin));
     std::vector<bool> covered(skin.size(), false);

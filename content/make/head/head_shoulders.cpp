@@ -78,7 +78,7 @@ const std::vector<StrokePath>& stroke_paths() {
 /// Size of shoulders relative to neutral ones: men's are broader.
 Vec3 shoulder_size(float y, const HeadShape& shape) {
     const float low = glm::smoothstep(-10.0f, -17.0f, y);
-    const float breadth = 1 + low * (0.035f * shape.sex + 0.01f * shape.build);
+    const float breadth = 1 + low * (0.04f * shape.sex + 0.01f * shape.build);
     const float depth = 1 + low * (0.03f * shape.sex + 0.07f * shape.build);
     return {breadth, 1, depth};
 }
