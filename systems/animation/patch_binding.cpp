@@ -36,9 +36,9 @@ constexpr int kNewtonSteps = 20;     ///< of Newton's method
 constexpr float kInside = 1e-4f;     ///< by which (u, v) may leave the triangle
 constexpr float kOnChart = 1e-5f;    ///< distance from a triangle of the chart
 constexpr float kFacingAway =
-    0.25f;                         ///< by how much of its size a patch that faces away is farther
-constexpr float kCloseTo = 0.25f;  ///< of the size of a patch
-constexpr float kLeastShare = 1e-3f;  ///< of the motion, and of the weight of a patch
+    0.25f;                          ///< by how much of its size a patch that faces away is farther
+constexpr float kCloseTo = 0.25f;   ///< of the size of a patch
+constexpr float kMinShare = 1e-3f;  ///< of the motion, and of the weight of a patch
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -276,7 +276,7 @@ class PatchBinder {
                                                    : 0.0f;
             SurfaceAnchor anchor =
                 finished(foot.anchor, points.normals[v], Vec3(points.tangents[v]));
-            if (anchor.patch != kNoPatch && weight > kLeastShare) {
+            if (anchor.patch != kNoPatch && weight > kMinShare) {
                 sum += weight;
                 anchor.share = weight * follows;
                 anchor.vertex = static_cast<std::uint32_t>(v);
@@ -286,7 +286,7 @@ class PatchBinder {
         for (SurfaceAnchor& anchor : anchors) {
             anchor.share /= sum;
         }
-        return follows < kLeastShare ? std::vector<SurfaceAnchor>{} : anchors;
+        return follows < kMinShare ? std::vector<SurfaceAnchor>{} : anchors;
     }
 
     [[nodiscard]] SurfaceAnchor

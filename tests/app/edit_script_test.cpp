@@ -459,7 +459,8 @@ TEST_CASE("edit script: where an edit cannot be saved, all others are, and it is
         {"set flame.transform.position = [1, 1, 1]", ""},
         {"set spark.name.text = ember", "the new name of \"spark\""},
         {"set row[0].name.text = gap", "the new name of \"row[0]\""}};
-    for (const auto& [line, left_out] : lines) {
+    for (const auto& [edit, left_out] : lines) {
+        const char* const line = edit;
         CAPTURE(line);
         EditedLevelFile level;
         level.run("set lamp.point_light.intensity = 20");

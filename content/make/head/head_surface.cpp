@@ -219,7 +219,7 @@ Vec3 to_neutral_head(const Vec3& point, const HeadShape& shape) {
     Vec3 p = {std::abs(point.x), point.y, point.z};
     p.x /= 1 + 0.03f * shape.sex * low + 0.05f * shape.build * low;
     p.x /= 1 + (shape.sex > 0 ? 0.035f : 0.06f) * shape.sex * neck;
-    p.z = kNeckAxis + (p.z - kNeckAxis) / (1 + 0.1f * shape.sex * neck);
+    p.z -= (p.z - kNeckAxis) * (1 - 1 / (1 + 0.1f * shape.sex * neck));
     p.y /= 1 + 0.025f * shape.sex * low;
     return shape.shoulders ? to_neutral_shoulders(p, shape) : p;
 }
